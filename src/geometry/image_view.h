@@ -1,0 +1,21 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+//
+// A borrowed single-channel image: how pictures cross layers without OpenCV.
+#pragma once
+
+#include <cstddef>
+
+namespace facet {
+
+template <typename T>
+struct ImageView {
+  const T* data = nullptr;  // row-major, not owned
+  int width = 0;            // [px]
+  int height = 0;           // [px]
+  ptrdiff_t stride = 0;     // elements between rows
+
+  const T& At(int x, int y) const { return data[y * stride + x]; }
+};
+
+}  // namespace facet

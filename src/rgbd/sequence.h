@@ -1,0 +1,85 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+//
+// An RGB-D sequence on disk. Images are decoded on demand and never kept.
+//
+// Pose convention: files store camera-to-world of one of the two cameras
+// (SequenceOptions::pose_camera); in memory every frame has
+// `depth_cam_from_world`, and color_cam_from_world() follows from the
+// calibration. Everything photometric uses the colour camera.
+#pragma once
+
+#include <memory>
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "rgbd/camera.h"
+
+namespace facet {
+
+struct Frame {
+  int number = 0;      // as in the file name; gaps are normal
+  bool usable = true;  // has a finite rigid pose and both images
+  Pose depth_cam_from_world;
+  std::string color_path, depth_path;
+};
+
+enum class PoseCamera { kDepth, kColor };
+enum class ExtrinsicDirection { kRigToCam, kCamToRig };
+
+struct SequenceOptions {
+  // Which camera the pose files belong to: depth in 7-Scenes and ScanNet.
+  PoseCamera pose_camera = PoseCamera::kDepth;
+  // Direction of the two extrinsic matrices of info.txt.
+  ExtrinsicDirection extrinsic_direction = ExtrinsicDirection::kRigToCam;
+  // Depth outside [min, max] counts as missing [m].
+  double min_depth_m = 0.3;
+  double max_depth_m = 6.0;
+};
+
+class RgbdSequence {
+ public:
+  virtual ~RgbdSequence() = default;
+
+  const RgbdCalibration& calibration() const { return calibration_; }
+  // Sorted by frame number.
+  const std::vector<Frame>& frames() const { return frames_; }
+  const std::string& path() const { return path_; }
+  PoseCamera pose_camera() const { return options_.pose_camera; }
+
+  Pose color_cam_from_world(int frame_idx) const {
+    return calibration_.color_from_depth *
+           frames_[frame_idx].depth_cam_from_world;
+  }
+  // Back to the camera of the pose files: world_from_<pose camera>.
+  Pose PoseFileFromColorCam(const Pose& color_cam_from_world) const;
+
+  // The colour image, CV_8UC3 in **RGB** order, size of calibration().color.
+  // Throws InputError naming the file when it does not decode or has another
+  // size.
+  virtual cv::Mat LoadColor(int frame_idx) const = 0;
+
+  // Depth in metres, CV_32F, size of calibration().depth; missing = 0
+  // (raw 0, raw 65535, outside the range of the options).
+  virtual cv::Mat LoadDepth(int frame_idx) const = 0;
+
+ protected:
+  RgbdCalibration calibration_;
+  std::vector<Frame> frames_;
+  std::string path_;
+  SequenceOptions options_;
+};
+
+// Opens the folder layout BundleFusion / 3DLite / 7-Scenes (docs/formats.md).
+// Frames with a lost pose (-inf, zeros, non-finite) or missing files are kept
+// but not usable; a counted warning says how many. Throws InputError: no such
+// folder, no frames, no info.txt or a malformed one, no usable frame, poses that
+// are not rigid.
+std::unique_ptr<RgbdSequence> OpenSequence(const std::string& path,
+                                           const SequenceOptions& options);
+
+// Luma 0.299 R + 0.587 G + 0.114 B in [0, 1], CV_32F, of an RGB 8-bit image.
+cv::Mat LumaFromRgb(const cv::Mat& rgb);
+
+}  // namespace facet

@@ -1,0 +1,54 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+//
+// Which keyframe sees which texel: the sets P_i of the paper (Sec. 3.3),
+// computed once and frozen, so that energies stay comparable.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "render/ray_scene.h"
+#include "rgbd/sequence.h"
+#include "texture/texels.h"
+
+namespace facet {
+
+// Compressed rows: keyframe k sees texel[begin[k]] ... texel[begin[k+1] - 1],
+// ascending.
+struct Observations {
+  std::vector<size_t> begin;    // num_keyframes + 1
+  std::vector<uint32_t> texel;  // indices into the TexelSet
+
+  size_t size() const { return texel.size(); }
+};
+
+// The tests of method ch. 6, each with its own switch.
+struct VisibilityOptions {
+  double min_depth_m = 0.3, max_depth_m = 6.0;  // z of the texel [m]
+  double image_margin_px = 5;                   // inside the colour image
+  bool test_occlusion = true;      // against the simplified mesh
+  double occlusion_tolerance_m = 0.02;
+  bool test_sensor_depth = true;   // |D - z| <= max(min_tol, 3 sigma(z) + 0.02)
+  double min_depth_tolerance_m = 0.03;
+  bool allow_missing_depth = false;
+  bool test_angle = true;          // cos of viewing angle at the plane
+  double max_angle_deg = 75;
+  bool test_depth_edges = true;    // away from jumps of the sensor depth
+  double depth_edge_jump_m = 0.05;     // jump > max(this, rel * z)
+  double depth_edge_jump_rel = 0.03;
+  int depth_edge_dilate_px = 3;
+  int min_views = 2;  // texels seen by fewer keyframes leave the problem
+};
+
+// Why observations were refused, in the order of the tests (each candidate
+// counts for the first test it fails).
+struct VisibilityCounts {
+  size_t candidates = 0, behind_or_far = 0, outside_image = 0, grazing = 0,
+         depth_missing = 0, depth_edge = 0, depth_disagrees = 0, occluded = 0,
+         too_few_views = 0, used = 0;
+};
+
+}  // namespace facet

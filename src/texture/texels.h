@@ -1,0 +1,39 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+//
+// Texels: sample points on the planes of the mesh (paper, Sec. 3.3; method
+// ch. 4). A texel is a point p on a face of the simplified mesh; its plane point
+// q = p - (n.p + w) n is recomputed whenever the plane changes.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "mesh/planar_partition.h"
+#include "mesh/tri_mesh.h"
+#include "texture/atlas.h"
+
+namespace facet {
+
+// Structure of arrays, sorted by plane, then chart, row and column.
+struct TexelSet {
+  double spacing_m = 0;  // of the full grid [m]
+  int stride = 1;        // every stride-th column and row of it is here
+  std::vector<Eigen::Vector3f> position;  // p on the mesh, world [m]
+  std::vector<int> plane;                 // cluster id
+  std::vector<int> face;
+  std::vector<std::array<float, 2>> bary;  // b1, b2; b0 = 1 - b1 - b2
+
+  size_t size() const { return position.size(); }
+  size_t MemoryBytes() const { return size() * (12 + 4 + 4 + 8); }
+};
+
+// The texels of all front-facing charts (steep ones take no part in E_c and E_p)
+// on every `stride`-th column and row of each chart's grid.
+TexelSet SampleTexels(const TriMesh& mesh,
+                      const PlanarPartition& partition,
+                      const Atlas& atlas,
+                      int stride);
+
+}  // namespace facet
