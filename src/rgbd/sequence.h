@@ -71,11 +71,14 @@ class RgbdSequence {
   SequenceOptions options_;
 };
 
-// Opens the folder layout BundleFusion / 3DLite / 7-Scenes (docs/formats.md).
-// Frames with a lost pose (-inf, zeros, non-finite) or missing files are kept
-// but not usable; a counted warning says how many. Throws InputError: no such
-// folder, no frames, no info.txt or a malformed one, no usable frame, poses that
-// are not rigid.
+// Opens the folder layout of BundleFusion, 3DLite and 7-Scenes
+// (rgbd/dataset_bundlefusion.h). Frames with a lost pose (non-finite or all
+// zeros), a pose that is not rigid or missing files are kept but not usable;
+// counted warnings say how many. Rotations are replaced by the nearest exact
+// ones. Throws OptionsError for an empty depth range, InputError: no such
+// folder, no frames, no calibration or a malformed one, no usable frame, more
+// than 20 % of the poses not rigid, the first images undecodable or of another
+// size than the calibration says.
 std::unique_ptr<RgbdSequence> OpenSequence(const std::string& path,
                                            const SequenceOptions& options);
 

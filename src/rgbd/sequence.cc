@@ -1,0 +1,48 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+#include "rgbd/sequence.h"
+
+#include <filesystem>
+
+#include "rgbd/dataset_bundlefusion.h"
+#include "util/errors.h"
+
+namespace facet {
+
+Pose RgbdSequence::PoseFileFromColorCam(
+    const Pose& color_cam_from_world) const {
+  if (options_.pose_camera == PoseCamera::kColor) {
+    return color_cam_from_world.Inverse();
+  }
+  return color_cam_from_world.Inverse() * calibration_.color_from_depth;
+}
+
+std::unique_ptr<RgbdSequence> OpenSequence(const std::string& path,
+                                           const SequenceOptions& options) {
+  if (!(options.min_depth_m >= 0 &&
+        options.min_depth_m < options.max_depth_m)) {
+    throw OptionsError(
+        "the depth range must satisfy 0 <= min_depth < max_depth");
+  }
+  if (!std::filesystem::is_directory(path)) {
+    throw InputError("sequence folder '" + path +
+                     "' does not exist: give the folder that holds the "
+                     "frames");
+  }
+  return OpenBundleFusionFolder(path, options);
+}
+
+cv::Mat LumaFromRgb(const cv::Mat& rgb) {
+  cv::Mat luma(rgb.size(), CV_32F);
+  constexpr float kR = 0.299f / 255, kG = 0.587f / 255, kB = 0.114f / 255;
+  for (int y = 0; y < rgb.rows; ++y) {
+    const uint8_t* in = rgb.ptr<uint8_t>(y);
+    float* out = luma.ptr<float>(y);
+    for (int x = 0; x < rgb.cols; ++x) {
+      out[x] = kR * in[3 * x] + kG * in[3 * x + 1] + kB * in[3 * x + 2];
+    }
+  }
+  return luma;
+}
+
+}  // namespace facet
