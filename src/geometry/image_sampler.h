@@ -19,11 +19,13 @@ struct Sample {
 };
 
 // I(u, v) with grad I. Outside the pixel centres' rectangle the point is
-// clamped to the border, flagged, and the gradient of the border cell returned.
+// clamped to the border and flagged; the derivative across that border is then
+// 0, which is the exact derivative of the clamped function.
 inline Sample SampleBilinear(const ImageView<float>& image, double u, double v) {
   Sample s;
   const double max_u = image.width - 1.0, max_v = image.height - 1.0;
-  s.clamped = !(u >= 0 && v >= 0 && u <= max_u && v <= max_v);
+  const bool u_inside = u >= 0 && u <= max_u, v_inside = v >= 0 && v <= max_v;
+  s.clamped = !(u_inside && v_inside);
   u = std::min(std::max(u, 0.0), max_u);  // this order also tames NaN
   v = std::min(std::max(v, 0.0), max_v);
   const int x = std::min(static_cast<int>(u), image.width - 2);
@@ -34,8 +36,8 @@ inline Sample SampleBilinear(const ImageView<float>& image, double u, double v) 
   const double top = row0[0] + a * (row0[1] - row0[0]);
   const double bottom = row1[0] + a * (row1[1] - row1[0]);
   s.value = top + b * (bottom - top);
-  s.dx = (1 - b) * (row0[1] - row0[0]) + b * (row1[1] - row1[0]);
-  s.dy = bottom - top;
+  if (u_inside) s.dx = (1 - b) * (row0[1] - row0[0]) + b * (row1[1] - row1[0]);
+  if (v_inside) s.dy = bottom - top;
   return s;
 }
 

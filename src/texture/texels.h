@@ -12,9 +12,10 @@
 
 #include "mesh/planar_partition.h"
 #include "mesh/tri_mesh.h"
-#include "texture/atlas.h"
 
 namespace facet {
+
+struct Atlas;  // texture/atlas.h
 
 // Structure of arrays, sorted by plane, then chart, row and column.
 struct TexelSet {

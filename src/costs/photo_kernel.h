@@ -1,0 +1,102 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+//
+// The photometric kernel: intensities, residuals and Gram matrices of many
+// observations at once, in float SIMD lanes with double sums.
+//
+//   r = I(F(pi(R q + t))) - C,   q = p - (n.(p - c) + d) n
+//
+// The file photo_kernel_impl.h is compiled once per instruction set and chosen
+// at run time, so that a portable build is fast everywhere; hence the interface
+// is plain floats, no Eigen type (whose layout depends on compiler flags).
+// Out-of-image policy: samples are clamped to the border (derivative 0 across
+// it) and counted, never dropped: the observation set stays frozen.
+// Derivatives: method, Sec. 7.2. Oracle: costs/photometric.h, in double.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace facet {
+
+// A keyframe as the kernel sees it. World coordinates are relative to the
+// origin chosen by the caller: t = R * origin + t_original.
+struct PhotoFrame {
+  const float* image = nullptr;  // luma in [0, 1]
+  int width = 0, height = 0;     // [px]
+  ptrdiff_t stride = 0;          // elements
+  float fx = 0, fy = 0, cx = 0, cy = 0;
+  float r[9] = {};               // rotation of cam_from_world, row-major
+  float t[3] = {};
+  const float* warp = nullptr;   // 2 * columns * rows, or null: no warp
+  int columns = 0, rows = 0;     // control vertices
+  float inverse_cell_width = 0, inverse_cell_height = 0;  // [1/px]
+};
+
+// A texel as the kernel reads it: a point (q or p, by function) and its colour.
+struct PhotoTexel {
+  float x, y, z;
+  float color;
+};
+
+struct PhotoCounts {
+  size_t used = 0;     // all samples
+  size_t clamped = 0;  // of them outside the image, moved to its border
+  size_t behind = 0;   // of them behind (or nearer than 5 cm to) the camera
+
+  void operator+=(const PhotoCounts& other) {
+    used += other.used;
+    clamped += other.clamped;
+    behind += other.behind;
+  }
+};
+
+// A Gram matrix [J r]^T [J r]: upper triangle of (n+1) x (n+1), row-major, with
+// the residual as last column.
+inline constexpr int GramSize(int n) { return (n + 1) * (n + 1); }
+
+struct PhotoKernel {
+  const char* name;  // "baseline", "avx2", "avx512"
+
+  // intensity[k] = I(F(pi(R q + t))) for the texels ids[0..n).
+  void (*sample)(const PhotoFrame& frame,
+                 const PhotoTexel* texels,
+                 const uint32_t* ids,
+                 size_t n,
+                 float* intensity,
+                 PhotoCounts* counts);
+
+  // Sum r^2 over texels given as plane points q that lie in the warp cell whose
+  // upper left vertex is in lattice column a and row b; frame.warp has just the
+  // cell's four vertices f00, f10, f01, f11 (or is null: no warp), and the
+  // cell's polynomial is used whatever u is. With `gram` also the Gram matrix
+  // over (omega, upsilon | f00 f10 f01 f11): 14 columns if frame.warp is given
+  // and `warp_columns`, else 6. gram is added to.
+  double (*frame_cell)(const PhotoFrame& frame,
+                       float a,
+                       float b,
+                       const PhotoTexel* texels,
+                       const uint32_t* ids,
+                       size_t n,
+                       bool warp_columns,
+                       double* gram,
+                       PhotoCounts* counts);
+
+  // Sum r^2 over texels given as mesh points p of one plane (n_x, n_y, n_z, d)
+  // about the anchor c. With `gram` also the Gram matrix over the four ambient
+  // plane parameters. gram is added to.
+  double (*plane_segment)(const PhotoFrame& frame,
+                          const float plane[4],
+                          const float anchor[3],
+                          const PhotoTexel* texels,
+                          const uint32_t* ids,
+                          size_t n,
+                          double* gram,
+                          PhotoCounts* counts);
+};
+
+// The fastest kernel this processor runs. The environment variable
+// FACET_KERNEL=baseline|avx2|avx512 asks for a particular one.
+const PhotoKernel& GetPhotoKernel();
+
+}  // namespace facet

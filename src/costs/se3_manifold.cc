@@ -1,0 +1,62 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+#include "costs/se3_manifold.h"
+
+#include <Eigen/Cholesky>
+
+namespace facet {
+namespace {
+
+using PlusJacobianMatrix = Eigen::Matrix<double, kPoseSize, 6, Eigen::RowMajor>;
+
+// d(Exp(xi) T)/dxi at 0: dq = 0.5 (omega, 0) q and dt = omega x t + upsilon.
+PlusJacobianMatrix PlusJacobianAt(const double* x) {
+  PlusJacobianMatrix p = PlusJacobianMatrix::Zero();
+  const double qx = x[0], qy = x[1], qz = x[2], qw = x[3];
+  p.topLeftCorner<4, 3>() << qw, qz, -qy,  //
+      -qz, qw, qx,                         //
+      qy, -qx, qw,                         //
+      -qx, -qy, -qz;
+  p.topLeftCorner<4, 3>() *= 0.5;
+  p.bottomLeftCorner<3, 3>() = -Skew(Eigen::Vector3d(x[4], x[5], x[6]));
+  p.bottomRightCorner<3, 3>().setIdentity();
+  return p;
+}
+
+}  // namespace
+
+bool LeftSe3Manifold::Plus(const double* x,
+                           const double* delta,
+                           double* x_plus_delta) const {
+  const Eigen::Map<const Vector6d> xi(delta);
+  PoseToBlock(ExpSe3(xi) * PoseFromBlock(x), x_plus_delta);
+  return true;
+}
+
+bool LeftSe3Manifold::PlusJacobian(const double* x, double* jacobian) const {
+  Eigen::Map<PlusJacobianMatrix> p(jacobian);
+  p = PlusJacobianAt(x);
+  return true;
+}
+
+bool LeftSe3Manifold::Minus(const double* y,
+                            const double* x,
+                            double* y_minus_x) const {
+  Eigen::Map<Vector6d> xi(y_minus_x);
+  xi = LogSe3(PoseFromBlock(y) * PoseFromBlock(x).Inverse());
+  return true;
+}
+
+bool LeftSe3Manifold::MinusJacobian(const double* x, double* jacobian) const {
+  Eigen::Map<PoseLift> m(jacobian);
+  m = LeftPoseLift(x);
+  return true;
+}
+
+PoseLift LeftPoseLift(const double* pose) {
+  const PlusJacobianMatrix p = PlusJacobianAt(pose);
+  const Eigen::Matrix<double, 6, 6> gram = p.transpose() * p;
+  return gram.ldlt().solve(p.transpose());
+}
+
+}  // namespace facet

@@ -1,0 +1,17 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+//
+// The colour step of the alternation (paper, Sec. 3.3): with poses, planes and
+// warps fixed, the C that minimises E_c is the mean of the observed intensities,
+// in closed form.
+#pragma once
+
+#include "problems/texture_problem.h"
+
+namespace facet {
+
+// Sets state->colors to the mean over the observing keyframes; texels without
+// observations keep their colour.
+void SolveColors(const TextureProblem& problem, ReconState* state);
+
+}  // namespace facet

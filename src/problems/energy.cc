@@ -1,0 +1,157 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+#include "problems/energy.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "costs/plane_manifold.h"
+#include "costs/se3_manifold.h"
+#include "util/parallel_for.h"
+
+namespace facet {
+namespace {
+
+struct TileSums {
+  double squares = 0;
+  PhotoCounts counts;
+};
+
+// Sum of squared residuals, either against the state's colours or against the
+// means of what is sampled.
+TileSums SumResiduals(const TextureProblem& problem,
+                      const ReconState& state,
+                      bool raw,
+                      bool against_means) {
+  std::vector<float> warps;
+  const std::vector<PhotoFrame> frames =
+      MakePhotoFrames(problem, state, raw, &warps);
+  const std::vector<PhotoTexel> points = PlanePoints(problem, state);
+  const PhotoKernel& kernel = GetPhotoKernel();
+  std::vector<TileSums> sums(problem.tiles.size());
+  ParallelFor(0, problem.tiles.size(), [&](size_t t) {
+    const TexelTile& tile = problem.tiles[t];
+    if (tile.segment_begin == tile.segment_end) return;
+    std::vector<float> intensity;
+    std::vector<size_t> offset;
+    for (size_t s = tile.segment_begin; s < tile.segment_end; ++s) {
+      const TileSegment& segment = problem.segments[s];
+      offset.push_back(intensity.size());
+      intensity.resize(intensity.size() + segment.end - segment.begin);
+      kernel.sample(frames[segment.keyframe], points.data(),
+                    problem.observations.texel.data() + segment.begin,
+                    segment.end - segment.begin,
+                    intensity.data() + offset.back(), &sums[t].counts);
+    }
+    std::vector<float> color(state.colors.begin() + tile.texel_begin,
+                             state.colors.begin() + tile.texel_end);
+    const auto for_each = [&](const auto& visit) {
+      for (size_t s = tile.segment_begin; s < tile.segment_end; ++s) {
+        const TileSegment& segment = problem.segments[s];
+        const float* values =
+            intensity.data() + offset[s - tile.segment_begin];
+        for (size_t i = segment.begin; i < segment.end; ++i) {
+          visit(problem.observations.texel[i] - tile.texel_begin,
+                values[i - segment.begin]);
+        }
+      }
+    };
+    if (against_means) {
+      std::fill(color.begin(), color.end(), 0.0f);
+      for_each([&](size_t texel, float value) { color[texel] += value; });
+      for (size_t i = 0; i < color.size(); ++i) {
+        const uint16_t views = problem.views[tile.texel_begin + i];
+        if (views > 0) color[i] /= static_cast<float>(views);
+      }
+    }
+    double squares = 0;
+    for_each([&](size_t texel, float value) {
+      const double r = static_cast<double>(value) - color[texel];
+      squares += r * r;
+    });
+    sums[t].squares = squares;
+  });
+  TileSums total;
+  for (const TileSums& s : sums) {
+    total.squares += s.squares;
+    total.counts += s.counts;
+  }
+  return total;
+}
+
+double SumPlaneDistances(const TextureProblem& problem,
+                         const ReconState& state) {
+  double sum = 0;
+  for (int j = 0; j < problem.NumPlanes(); ++j) {
+    const Eigen::Map<const Eigen::Vector4d> phi(state.planes.data() +
+                                                kPlaneSize * j);
+    sum += std::max(0.0, phi.dot(problem.moments[j] * phi));
+  }
+  return sum;
+}
+
+}  // namespace
+
+double EnergyTerms::RmsIntensity() const {
+  return observations == 0
+             ? 0.0
+             : std::sqrt(e_c / texel_weight / static_cast<double>(observations));
+}
+
+double EnergyTerms::ClampedShare() const {
+  return observations == 0 ? 0.0
+                           : static_cast<double>(clamped) /
+                                 static_cast<double>(observations);
+}
+
+double EvaluatePosePrior(const TextureProblem& problem,
+                         const EnergyWeights& weights,
+                         const ReconState& state) {
+  if (!weights.pose_prior) return 0;
+  double sum = 0;
+  for (int k = 0; k < problem.NumKeyframes(); ++k) {
+    double r[6];
+    PosePriorCost(problem.initial_cam_from_world[k], weights.prior)(
+        state.poses.data() + kPoseSize * k, r);
+    for (const double x : r) sum += x * x;
+  }
+  return sum;
+}
+
+EnergyTerms EvaluateEnergy(const TextureProblem& problem,
+                           const EnergyWeights& weights,
+                           const ReconState& state,
+                           bool with_rms_grey) {
+  const TileSums sums = SumResiduals(problem, state, false, false);
+  EnergyTerms terms;
+  terms.texel_weight = weights.texel_weight;
+  terms.e_c = weights.texel_weight * sums.squares;
+  terms.e_p = weights.texel_weight * SumPlaneDistances(problem, state);
+  for (const double f : state.warps) terms.e_s += f * f;
+  terms.e_prior = EvaluatePosePrior(problem, weights, state);
+  terms.e_tex =
+      terms.e_c + weights.lambda1 * terms.e_p + weights.lambda2 * terms.e_s;
+  terms.observations = sums.counts.used;
+  terms.clamped = sums.counts.clamped;
+  terms.behind = sums.counts.behind;
+  if (with_rms_grey && terms.observations > 0) {
+    const TileSums raw = SumResiduals(problem, state, true, true);
+    terms.rms_grey =
+        255 * std::sqrt(raw.squares / static_cast<double>(raw.counts.used));
+  }
+  return terms;
+}
+
+double InitialLambda1(const TextureProblem& problem,
+                      const EnergyWeights& weights,
+                      const ReconState& initial_state) {
+  const EnergyTerms terms = EvaluateEnergy(problem, weights, initial_state);
+  size_t texels = 0;
+  for (const size_t n : problem.plane_texels) texels += n;
+  const double floor =
+      weights.texel_weight * static_cast<double>(texels) * 0.0005 * 0.0005;
+  if (terms.e_c <= 0 || texels == 0) return 1e3;
+  return terms.e_c / std::max(terms.e_p, floor);
+}
+
+}  // namespace facet

@@ -1,0 +1,64 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+//
+// The one evaluator of the paper's energy (Eq. main):
+//
+//   E_tex = E_c + lambda1 E_p + lambda2 E_s
+//
+//   E_c  sum over observations of (I - C)^2, intensities in 0-1, times the
+//        texel weight (stride^2: as if the full texel grid took part)
+//   E_p  sum over observed texels of (n.p + w)^2 [m^2], times the texel weight
+//   E_s  sum over control vertices of |f|^2 [px^2]
+//
+// No 1/2, no loss: all schedules and solvers are judged by this function, never
+// by Ceres's internal cost (2 * cost = E_tex + E_prior; tested). The set of
+// observations is frozen: samples outside the image are clamped to its border
+// and counted.
+#pragma once
+
+#include <string>
+
+#include "problems/texture_problem.h"
+
+namespace facet {
+
+struct EnergyWeights {
+  double lambda1 = 0;      // set by InitialLambda1
+  double lambda2 = 0.1;    // paper
+  double texel_weight = 1;  // stride^2
+  bool pose_prior = true;
+  PosePriorSigmas prior;
+};
+
+struct EnergyTerms {
+  double e_c = 0, e_p = 0, e_s = 0;  // unweighted by lambda
+  double e_prior = 0;                // pose prior (costs/pose_prior.h)
+  double e_tex = 0;                  // E_c + lambda1 E_p + lambda2 E_s
+  double rms_grey = 0;  // rms of I - C on the unsmoothed images, 0-255
+  size_t observations = 0, clamped = 0, behind = 0;
+
+  double Objective() const { return e_tex + e_prior; }
+  double RmsIntensity() const;   // sqrt(mean (I - C)^2), smoothed images, 0-1
+  double ClampedShare() const;
+  double texel_weight = 1;
+};
+
+// With `with_rms_grey` also rms_grey, against colours that are the means of the
+// unsmoothed images (one more pass).
+EnergyTerms EvaluateEnergy(const TextureProblem& problem,
+                           const EnergyWeights& weights,
+                           const ReconState& state,
+                           bool with_rms_grey = false);
+
+// E_prior alone.
+double EvaluatePosePrior(const TextureProblem& problem,
+                         const EnergyWeights& weights,
+                         const ReconState& state);
+
+// lambda1 = E_c / E_p at the initial state (paper, Sec. 3.3), with E_p floored
+// at (0.5 mm)^2 a texel; 1e3 when E_c is 0 (method, Sec. 7.4).
+double InitialLambda1(const TextureProblem& problem,
+                      const EnergyWeights& weights,
+                      const ReconState& initial_state);
+
+}  // namespace facet

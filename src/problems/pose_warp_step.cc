@@ -1,0 +1,294 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+#include "problems/pose_warp_step.h"
+
+#include <ceres/loss_function.h>
+#include <ceres/problem.h>
+#include <ceres/solver.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "costs/frame_cell_cost.h"
+#include "costs/warp_offset.h"
+#include "util/parallel_for.h"
+
+namespace facet {
+namespace {
+
+// A keyframe's texels sorted by warp cell.
+struct CellBins {
+  std::vector<size_t> begin;  // cells + 1
+  std::vector<uint32_t> ids;
+};
+
+// The cell of each texel at the current pose. Without warp everything is one
+// bin.
+CellBins BinByCell(const TextureProblem& problem,
+                   const std::vector<PhotoTexel>& points,
+                   const Pose& cam_from_world,
+                   int keyframe,
+                   bool one_bin) {
+  const uint32_t* ids = problem.observations.texel.data() +
+                        problem.observations.begin[keyframe];
+  const size_t n = problem.observations.begin[keyframe + 1] -
+                   problem.observations.begin[keyframe];
+  CellBins bins;
+  if (one_bin) {
+    bins.begin = {0, n};
+    bins.ids.assign(ids, ids + n);
+    return bins;
+  }
+  const Eigen::Matrix3d r = cam_from_world.RotationMatrix();
+  const Eigen::Vector3d t = cam_from_world * problem.origin;
+  std::vector<uint16_t> cell(n);
+  bins.begin.assign(problem.lattice.NumCells() + 1, 0);
+  for (size_t i = 0; i < n; ++i) {
+    const PhotoTexel& texel = points[ids[i]];
+    const Eigen::Vector3d y = r * Eigen::Vector3d(texel.x, texel.y, texel.z) + t;
+    const Eigen::Vector2d u = problem.camera.Project<double>(y);
+    const WarpCell where = problem.lattice.Locate(u.x(), u.y());
+    cell[i] = static_cast<uint16_t>(problem.lattice.CellIndex(where.a, where.b));
+    ++bins.begin[cell[i] + 1];
+  }
+  for (size_t c = 1; c < bins.begin.size(); ++c) bins.begin[c] += bins.begin[c - 1];
+  std::vector<size_t> next(bins.begin.begin(), bins.begin.end() - 1);
+  bins.ids.resize(n);
+  for (size_t i = 0; i < n; ++i) bins.ids[next[cell[i]]++] = ids[i];
+  return bins;
+}
+
+ceres::Solver::Options FrameSolverOptions(const SolverConfig& config,
+                                          bool with_warp,
+                                          double radius) {
+  ceres::Solver::Options options;
+  if (with_warp) {
+    options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+    options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
+  } else {
+    options.linear_solver_type = ceres::DENSE_QR;
+  }
+  options.max_num_iterations = config.max_pose_iterations;
+  options.initial_trust_region_radius = radius;
+  options.logging_type = ceres::SILENT;
+  options.num_threads = 1;
+  options.function_tolerance = 1e-6;
+  return options;
+}
+
+// One keyframe's problem, its parameters in place in the state.
+class FrameProblem {
+ public:
+  FrameProblem(const TextureProblem& problem,
+               const EnergyWeights& weights,
+               unsigned blocks,
+               const PhotoFrame& frame,
+               const std::vector<PhotoTexel>& points,
+               int keyframe,
+               ReconState* state)
+      : texture_(problem),
+        blocks_(blocks),
+        pose_(state->poses.data() + kPoseSize * keyframe),
+        warp_(state->warps.data() +
+              2 * static_cast<size_t>(problem.lattice.NumVertices()) * keyframe) {
+    // A pose-only solve still sees a warp that is there already.
+    with_warp_ = (blocks & kWarps) != 0 || frame.warp != nullptr;
+    bins_ = BinByCell(problem, points, state->CamFromWorld(keyframe), keyframe,
+                      !with_warp_);
+    AddCells(frame, points, weights);
+    if (with_warp_) AddWarpTerm(weights);
+    if (weights.pose_prior) {
+      ceres_.AddResidualBlock(
+          PosePriorCost::Create(problem.initial_cam_from_world[keyframe],
+                                weights.prior),
+          nullptr, pose_);
+    }
+    ceres_.SetManifold(pose_, new LeftSe3Manifold);
+    if (!(blocks & kPoses)) ceres_.SetParameterBlockConstant(pose_);
+  }
+
+  bool with_warp() const { return with_warp_; }
+  ceres::Problem* ceres_problem() { return &ceres_; }
+
+  double Cost() {
+    double cost = 0;
+    ceres_.Evaluate(ceres::Problem::EvaluateOptions(), &cost, nullptr, nullptr,
+                    nullptr);
+    return cost;
+  }
+
+ private:
+  double* Vertex(int column, int row) {
+    return warp_ + 2 * texture_.lattice.VertexIndex(column, row);
+  }
+
+  void AddCells(const PhotoFrame& frame,
+                const std::vector<PhotoTexel>& points,
+                const EnergyWeights& weights) {
+    const int columns = with_warp_ ? texture_.lattice.columns - 1 : 1;
+    for (size_t c = 0; c + 1 < bins_.begin.size(); ++c) {
+      const size_t n = bins_.begin[c + 1] - bins_.begin[c];
+      if (n == 0) continue;
+      const int a = static_cast<int>(c) % columns;
+      const int b = static_cast<int>(c) / columns;
+      auto* cost = new FrameCellCost(frame, texture_.origin, a, b,
+                                     points.data(), bins_.ids.data() +
+                                     bins_.begin[c], n, with_warp_,
+                                     weights.texel_weight);
+      std::vector<double*> parameters = {pose_};
+      if (with_warp_) {
+        parameters.insert(parameters.end(),
+                          {Vertex(a, b), Vertex(a + 1, b), Vertex(a, b + 1),
+                           Vertex(a + 1, b + 1)});
+      }
+      ceres_.AddResidualBlock(cost, nullptr, parameters);
+    }
+  }
+
+  void AddWarpTerm(const EnergyWeights& weights) {
+    for (int l = 0; l < texture_.lattice.NumVertices(); ++l) {
+      ceres_.AddResidualBlock(
+          WarpOffsetCost::Create(),
+          new ceres::ScaledLoss(nullptr, weights.lambda2,
+                                ceres::TAKE_OWNERSHIP),
+          warp_ + 2 * l);
+      if (!(blocks_ & kWarps)) ceres_.SetParameterBlockConstant(warp_ + 2 * l);
+    }
+  }
+
+  const TextureProblem& texture_;
+  unsigned blocks_;
+  double* pose_;
+  double* warp_;
+  bool with_warp_ = false;
+  CellBins bins_;
+  ceres::Problem ceres_;
+};
+
+// Scales the change of pose and warp back to the limits of the configuration.
+void LimitFrameStep(const SolverConfig& config,
+                    const std::vector<double>& pose_before,
+                    const std::vector<double>& warp_before,
+                    double* pose,
+                    double* warp) {
+  const Pose before = PoseFromBlock(pose_before.data());
+  const Vector6d xi = LogSe3(PoseFromBlock(pose) * before.Inverse());
+  const Pose change = PoseFromBlock(pose) * before.Inverse();
+  const Eigen::Vector3d center_shift =
+      PoseFromBlock(pose).CenterInSource() - before.CenterInSource();
+  double scale = std::max({1.0, RotationAngle(change) / config.max_rotation_rad,
+                           center_shift.norm() / config.max_translation_m});
+  for (size_t k = 0; k < warp_before.size(); ++k) {
+    scale =
+        std::max(scale, std::abs(warp[k] - warp_before[k]) / config.max_warp_px);
+  }
+  if (!(scale > 1)) return;
+  PoseToBlock(ExpSe3(xi / scale) * before, pose);
+  for (size_t k = 0; k < warp_before.size(); ++k) {
+    warp[k] = warp_before[k] + (warp[k] - warp_before[k]) / scale;
+  }
+}
+
+// det D > 0.2 in the corners of every cell, hence everywhere: the warp does not
+// fold over.
+bool WarpIsInvertible(const WarpLattice& lattice, const double* f) {
+  const double sx = 1 / lattice.CellWidth(), sy = 1 / lattice.CellHeight();
+  for (int row = 0; row + 1 < lattice.rows; ++row) {
+    for (int column = 0; column + 1 < lattice.columns; ++column) {
+      const double* f00 = f + 2 * lattice.VertexIndex(column, row);
+      const double* f10 = f00 + 2;
+      const double* f01 = f00 + 2 * lattice.columns;
+      const double* f11 = f01 + 2;
+      for (int corner = 0; corner < 4; ++corner) {
+        const double* low = corner & 1 ? f01 : f00;
+        const double* high = corner & 1 ? f11 : f10;
+        const double* left = corner & 2 ? f10 : f00;
+        const double* below = corner & 2 ? f11 : f01;
+        const double dxx = 1 + (high[0] - low[0]) * sx;
+        const double dyx = (high[1] - low[1]) * sx;
+        const double dxy = (below[0] - left[0]) * sy;
+        const double dyy = 1 + (below[1] - left[1]) * sy;
+        if (!(dxx * dyy - dxy * dyx > 0.2)) return false;
+      }
+    }
+  }
+  return true;
+}
+
+struct FrameResult {
+  int iterations = 0;
+  bool reverted = false;
+};
+
+FrameResult SolveFrame(const TextureProblem& problem,
+                       const EnergyWeights& weights,
+                       unsigned blocks,
+                       const SolverConfig& config,
+                       const PhotoFrame& frame,
+                       const std::vector<PhotoTexel>& points,
+                       int keyframe,
+                       double* radius,
+                       ReconState* state) {
+  const size_t num_warp = 2 * static_cast<size_t>(problem.lattice.NumVertices());
+  double* pose = state->poses.data() + kPoseSize * keyframe;
+  double* warp = state->warps.data() + num_warp * keyframe;
+  const std::vector<double> pose_before(pose, pose + kPoseSize);
+  const std::vector<double> warp_before(warp, warp + num_warp);
+
+  FrameProblem frame_problem(problem, weights, blocks, frame, points, keyframe,
+                             state);
+  const double cost_before = frame_problem.Cost();
+  ceres::Solver::Summary solved;
+  ceres::Solve(FrameSolverOptions(config, frame_problem.with_warp(), *radius),
+               frame_problem.ceres_problem(), &solved);
+  FrameResult result;
+  result.iterations = static_cast<int>(solved.iterations.size());
+  if (!solved.iterations.empty()) {
+    *radius = std::clamp(solved.iterations.back().trust_region_radius, 1e-2,
+                         1e8);
+  }
+  LimitFrameStep(config, pose_before, warp_before, pose, warp);
+  if (!(frame_problem.Cost() <= cost_before) ||
+      !WarpIsInvertible(problem.lattice, warp)) {
+    std::copy(pose_before.begin(), pose_before.end(), pose);
+    std::copy(warp_before.begin(), warp_before.end(), warp);
+    result.reverted = true;
+  }
+  return result;
+}
+
+}  // namespace
+
+void SolvePosesAndWarps(const TextureProblem& problem,
+                        const EnergyWeights& weights,
+                        unsigned blocks,
+                        const SolverConfig& config,
+                        SolverMemory* memory,
+                        ReconState* state,
+                        PhaseSummary* summary) {
+  const size_t num_frames = static_cast<size_t>(problem.NumKeyframes());
+  if (memory->frame_radius.size() != num_frames) {
+    memory->frame_radius.assign(num_frames, 1e4);
+  }
+  std::vector<float> warps;
+  const std::vector<PhotoFrame> frames =
+      MakePhotoFrames(problem, *state, false, &warps);
+  const std::vector<PhotoTexel> points = PlanePoints(problem, *state);
+  std::vector<FrameResult> results(num_frames);
+  ParallelFor(0, num_frames, [&](size_t k) {
+    const size_t n =
+        problem.observations.begin[k + 1] - problem.observations.begin[k];
+    if (n < config.min_frame_observations) return;
+    results[k] = SolveFrame(problem, weights, blocks, config, frames[k], points,
+                            static_cast<int>(k), &memory->frame_radius[k],
+                            state);
+  });
+  for (const FrameResult& result : results) {
+    summary->problems += result.iterations > 0 ? 1 : 0;
+    summary->iterations += result.iterations;
+    summary->reverted += result.reverted ? 1 : 0;
+  }
+}
+
+}  // namespace facet

@@ -1,0 +1,63 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+#include "problems/solve_blocks.h"
+
+#include "problems/color_step.h"
+#include "problems/plane_step.h"
+#include "problems/pose_warp_step.h"
+#include "util/errors.h"
+#include "util/resources.h"
+
+namespace facet {
+
+std::string BlockSetName(unsigned blocks) {
+  std::string name;
+  const auto add = [&](unsigned bit, const char* text) {
+    if (!(blocks & bit)) return;
+    if (!name.empty()) name += "+";
+    name += text;
+  };
+  add(kColors, "C");
+  add(kPlanes, "Phi");
+  add(kPoses, "T");
+  add(kWarps, "F");
+  return name;
+}
+
+PhaseSummary SolveBlocks(const TextureProblem& problem,
+                         const EnergyWeights& weights,
+                         unsigned free,
+                         const SolverConfig& config,
+                         const EnergyTerms& before,
+                         SolverMemory* memory,
+                         ReconState* state) {
+  const Stopwatch watch;
+  PhaseSummary summary;
+  summary.blocks = BlockSetName(free);
+  summary.before = before;
+  const ReconState backup = *state;
+  if (free == kColors) {
+    SolveColors(problem, state);
+  } else if (free == kPlanes) {
+    SolvePlanes(problem, weights, config, memory, state, &summary);
+  } else if (free != 0 && (free & ~unsigned{kPoses | kWarps}) == 0) {
+    SolvePosesAndWarps(problem, weights, free, config, memory, state, &summary);
+  } else {
+    throw OptionsError("the blocks " + summary.blocks +
+                       " cannot be solved together; use C, Phi, T, F or T+F");
+  }
+  summary.after =
+      EvaluateEnergy(problem, weights, *state, config.trace_rms_grey);
+  // Colours are exact up to float rounding.
+  const double tolerance = free == kColors ? 1e-6 * before.Objective() : 0.0;
+  if (!(summary.after.Objective() <= before.Objective() + tolerance)) {
+    *state = backup;
+    summary.after = before;
+    summary.accepted = false;
+  }
+  summary.wall_s = watch.WallSeconds();
+  summary.cpu_s = watch.CpuSecondsSince();
+  return summary;
+}
+
+}  // namespace facet

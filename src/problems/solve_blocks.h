@@ -1,0 +1,79 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+//
+// The one door to every solve: which blocks are free, from which state.
+//
+//   {C}       closed-form means (problems/color_step.h)
+//   {Phi}     one small Ceres problem a plane, on all threads
+//   {T}, {F}, {T, F}   one Ceres problem a keyframe, on all threads
+//
+// A phase that raises the objective E_tex + E_prior is rolled back and marked.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "problems/energy.h"
+#include "problems/texture_problem.h"
+
+namespace facet {
+
+enum BlockSet : unsigned {
+  kColors = 1,  // C
+  kPlanes = 2,  // Phi
+  kPoses = 4,   // T
+  kWarps = 8,   // F
+};
+
+// "C", "Phi", "T+F", ...
+std::string BlockSetName(unsigned blocks);
+
+// How a plane is parametrised in the plane step.
+enum class PlaneStep {
+  kAnchored,  // S^2 x R about the centroid (default)
+  kRaw4,      // four free numbers, normalised afterwards (the paper)
+};
+
+struct SolverConfig {
+  int max_plane_iterations = 3;
+  int max_pose_iterations = 5;
+  PlaneStep plane_step = PlaneStep::kAnchored;
+  // Limits of one solve (method, Sec. 7.5): a longer step is scaled down.
+  double max_rotation_rad = 2.0 * 3.14159265358979 / 180;
+  double max_translation_m = 0.03;
+  double max_plane_offset_m = 0.02;
+  double max_plane_tilt_rad = 3.0 * 3.14159265358979 / 180;
+  double max_warp_px = 5;
+  // Also rms_grey after every phase (one more pass over the observations).
+  bool trace_rms_grey = true;
+  // Keyframes with fewer observations keep their pose.
+  size_t min_frame_observations = 200;
+};
+
+// Trust-region radii carried from one solve of a block to the next; sized on
+// first use.
+struct SolverMemory {
+  std::vector<double> plane_radius, frame_radius;
+};
+
+struct PhaseSummary {
+  std::string blocks;
+  bool accepted = true;     // false: rolled back
+  int problems = 0;         // Ceres problems solved
+  int iterations = 0;       // summed over them
+  int reverted = 0;         // problems whose result was worse and undone
+  double wall_s = 0, cpu_s = 0;
+  EnergyTerms before, after;
+};
+
+// Optimises the blocks of the set `free` in place. `before` = energy of *state
+// (known from the previous phase).
+PhaseSummary SolveBlocks(const TextureProblem& problem,
+                         const EnergyWeights& weights,
+                         unsigned free,
+                         const SolverConfig& config,
+                         const EnergyTerms& before,
+                         SolverMemory* memory,
+                         ReconState* state);
+
+}  // namespace facet

@@ -1,0 +1,97 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+//
+// What the photometric optimisation works on: the constant part (TextureProblem)
+// and the unknowns (ReconState).
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "costs/photo_kernel.h"
+#include "costs/pose_prior.h"
+#include "geometry/image_view.h"
+#include "geometry/pinhole.h"
+#include "geometry/plane.h"
+#include "geometry/pose.h"
+#include "geometry/warp_grid.h"
+#include "texture/observations.h"
+#include "texture/texels.h"
+
+namespace facet {
+
+// The unknowns, in flat double arrays with stable addresses: Ceres optimises
+// them in place. Copyable: every schedule of a comparison starts from a copy.
+struct ReconState {
+  std::vector<double> poses;   // 7 a keyframe, layout of costs/se3_manifold.h
+  std::vector<double> planes;  // 4 a plane: n, d about its anchor
+  std::vector<double> warps;   // 2 * vertices a keyframe [px]; zeros = no warp
+  std::vector<float> colors;   // 1 a texel, luma in [0, 1]
+
+  Pose CamFromWorld(int keyframe) const;
+  // n.x + w = 0 with w = d - n.c.
+  Plane PlaneAt(int plane, const Eigen::Vector3d& anchor) const;
+};
+
+// Consecutive texels of one plane, at most kTileTexels: the unit of parallel
+// work whose partial sums are added in order.
+struct TexelTile {
+  int plane = 0;
+  size_t texel_begin = 0, texel_end = 0;
+  size_t segment_begin = 0, segment_end = 0;  // into TextureProblem::segments
+};
+inline constexpr size_t kTileTexels = 4096;
+
+// Observations of a tile's texels by one keyframe: texel ids
+// observations.texel[begin .. end).
+struct TileSegment {
+  int keyframe = 0;
+  size_t begin = 0, end = 0;
+};
+
+// Everything that stays constant while poses, planes, warps and colours move.
+struct TextureProblem {
+  Pinhole camera;        // of the colour images
+  WarpLattice lattice;
+  std::vector<ImageView<float>> images;      // luma, pre-smoothed: E_c
+  std::vector<ImageView<float>> raw_images;  // luma, unsmoothed: rms_grey
+  TexelSet texels;
+  Observations observations;
+  std::vector<TexelTile> tiles;
+  std::vector<TileSegment> segments;     // by tile, ascending keyframe
+  std::vector<size_t> plane_tile_begin;  // planes + 1: tiles of each plane
+  std::vector<Eigen::Vector3d> anchors;  // of the planes, world [m]
+  std::vector<Eigen::Matrix4d> moments;  // of costs/plane_moment.h, a plane
+  std::vector<size_t> plane_texels;      // active texels of each plane
+  std::vector<uint16_t> views;           // keyframes that see each texel
+  std::vector<Pose> initial_cam_from_world;  // centre of the pose prior
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  // of float coordinates
+
+  int NumKeyframes() const { return static_cast<int>(images.size()); }
+  int NumPlanes() const { return static_cast<int>(anchors.size()); }
+};
+
+// Builds the derived tables (tiles, segments, moments, views) from cameras,
+// images, texels, observations and anchors, which must be set.
+void FinishTextureProblem(TextureProblem* problem);
+
+// The state at the start: given poses and planes, no warp, mean colours.
+ReconState InitialState(const TextureProblem& problem,
+                        const std::vector<Plane>& planes);
+
+// Keyframes in the kernel's form for the current state. `warps` receives float
+// copies that must live as long as the result. raw = unsmoothed images.
+std::vector<PhotoFrame> MakePhotoFrames(const TextureProblem& problem,
+                                        const ReconState& state,
+                                        bool raw,
+                                        std::vector<float>* warps);
+
+// Kernel texels at the plane points q (planes of the state), colours included.
+std::vector<PhotoTexel> PlanePoints(const TextureProblem& problem,
+                                    const ReconState& state);
+// Kernel texels at the mesh points p, colours included.
+std::vector<PhotoTexel> MeshPoints(const TextureProblem& problem,
+                                   const ReconState& state);
+
+}  // namespace facet

@@ -1,0 +1,86 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+#include "schedule/run_schedule.h"
+
+#include <cstdio>
+
+#include "util/resources.h"
+
+namespace facet {
+namespace {
+
+std::string CsvLine(int round,
+                    const std::string& phase,
+                    const EnergyTerms& e,
+                    const PhaseSummary* summary,
+                    double wall_s,
+                    double cpu_s) {
+  char line[512];
+  std::snprintf(line, sizeof(line),
+                "%d,%s,%.9g,%.9g,%.9g,%.9g,%.9g,%.6f,%zu,%zu,%zu,%d,%d,%d,%d,"
+                "%.3f,%.3f\n",
+                round, phase.c_str(), e.e_c, e.e_p, e.e_s, e.e_tex, e.e_prior,
+                e.rms_grey, e.observations, e.clamped, e.behind,
+                summary ? summary->accepted : 1,
+                summary ? summary->problems : 0,
+                summary ? summary->iterations : 0,
+                summary ? summary->reverted : 0, wall_s, cpu_s);
+  return line;
+}
+
+}  // namespace
+
+Trace RunSchedule(const TextureProblem& problem,
+                  const EnergyWeights& weights,
+                  const SolverConfig& config,
+                  const Schedule& schedule,
+                  const StopRule& stop,
+                  const std::function<void(const TraceRow&)>& on_row,
+                  ReconState* state) {
+  const Stopwatch watch;
+  Trace trace;
+  trace.initial =
+      EvaluateEnergy(problem, weights, *state, config.trace_rms_grey);
+  SolverMemory memory;
+  EnergyTerms current = trace.initial;
+  int round = 0;
+  for (size_t g = 0; g < schedule.size(); ++g) {
+    std::vector<double> objective = {current.Objective()};
+    for (int r = 0; r < schedule[g].rounds; ++r) {
+      ++round;
+      for (const unsigned blocks : schedule[g].phases) {
+        TraceRow row;
+        row.group = static_cast<int>(g);
+        row.round = round;
+        row.phase = SolveBlocks(problem, weights, blocks, config, current,
+                                &memory, state);
+        current = row.phase.after;
+        row.wall_s = watch.WallSeconds();
+        row.cpu_s = watch.CpuSecondsSince();
+        trace.rows.push_back(row);
+        if (on_row) on_row(row);
+      }
+      objective.push_back(current.Objective());
+      const size_t n = objective.size();
+      if (n >= 3 && objective[n - 3] - objective[n - 1] <
+                        stop.relative_decrease * objective[n - 3]) {
+        break;
+      }
+    }
+  }
+  return trace;
+}
+
+std::string TraceCsv(const Trace& trace) {
+  std::string csv =
+      "round,phase,E_c,E_p_m2,E_s_px2,E_tex,E_prior,rms_grey_255,observations,"
+      "clamped,behind,accepted,problems,iterations,reverted,wall_s,cpu_s\n";
+  csv += CsvLine(0, "initial", trace.initial, nullptr, 0, 0);
+  for (const TraceRow& row : trace.rows) {
+    csv += CsvLine(row.round, row.phase.blocks, row.phase.after, &row.phase,
+                   row.wall_s, row.cpu_s);
+  }
+  return csv;
+}
+
+}  // namespace facet
