@@ -1,0 +1,40 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+//
+// Depth images: where they cannot be trusted, and how they look from the
+// colour camera. Depth images are CV_32F in metres with 0 = missing.
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include "rgbd/camera.h"
+
+namespace facet {
+
+// Pixels within `dilate_px` (square neighbourhood) of a depth discontinuity, as
+// CV_8U 255, else 0 (method, ch. 6 rule 6). A discontinuity lies between
+// 4-neighbours when one of them is missing and the other is not, or when their
+// depths z1 <= z2 differ by more than max(jump_m, jump_rel z1); both pixels
+// count. Two missing pixels and the image border are no discontinuity.
+cv::Mat DepthEdgeMask(const cv::Mat& depth,
+                      double jump_m,
+                      double jump_rel,
+                      int dilate_px);
+
+// Standard deviation of the axial noise of a structured-light sensor at depth
+// z [m], in metres (Nguyen et al. 2012): 0.0012 + 0.0019 (z - 0.4)^2.
+inline double DepthSigma(double z) {
+  return 0.0012 + 0.0019 * (z - 0.4) * (z - 0.4);
+}
+
+// The depth as the colour camera would measure it: CV_32F of the size of
+// calibration.color, z in the colour camera [m], 0 = nothing there.
+// Neighbouring depth pixels on one surface span triangles that are rasterised
+// (1/z is linear in the image), so that a larger colour image gets no pinholes;
+// the nearest surface wins. No triangle spans a depth jump above max(5 cm, 3 %
+// z); pixels beside jumps are splatted singly. `depth` has the size of
+// calibration.depth.
+cv::Mat WarpDepthToColor(const cv::Mat& depth,
+                         const RgbdCalibration& calibration);
+
+}  // namespace facet
