@@ -149,6 +149,21 @@ void DrawSurfaces(const cv::Mat& depth,
   }
 }
 
+cv::Vec3b BilinearColor(const cv::Mat& image, double u, double v) {
+  const int x = std::clamp(static_cast<int>(u), 0, image.cols - 2);
+  const int y = std::clamp(static_cast<int>(v), 0, image.rows - 2);
+  const double a = u - x, b = v - y;
+  const cv::Vec3b* top = image.ptr<cv::Vec3b>(y) + x;
+  const cv::Vec3b* low = image.ptr<cv::Vec3b>(y + 1) + x;
+  cv::Vec3b color;
+  for (int i = 0; i < 3; ++i) {
+    color[i] = cv::saturate_cast<uint8_t>(
+        (1 - b) * ((1 - a) * top[0][i] + a * top[1][i]) +
+        b * ((1 - a) * low[0][i] + a * low[1][i]));
+  }
+  return color;
+}
+
 }  // namespace
 
 cv::Mat DepthEdgeMask(const cv::Mat& depth,
@@ -196,6 +211,31 @@ cv::Mat WarpDepthToColor(const cv::Mat& depth,
     }
   }
   return inverse_depth;
+}
+
+RegisteredColor RegisterColorToDepth(const cv::Mat& color,
+                                     const cv::Mat& depth,
+                                     const RgbdCalibration& calibration) {
+  const cv::Mat surface = WarpDepthToColor(depth, calibration);
+  const std::vector<WarpedPixel> pixels = WarpPixels(depth, calibration);
+  RegisteredColor result;
+  result.color = cv::Mat::zeros(depth.size(), CV_8UC3);
+  result.seen = cv::Mat::zeros(depth.size(), CV_8U);
+  for (int y = 0; y < depth.rows; ++y) {
+    for (int x = 0; x < depth.cols; ++x) {
+      const WarpedPixel& p = pixels[static_cast<size_t>(y) * depth.cols + x];
+      if (p.inverse_z <= 0 || !calibration.color.Contains({p.u, p.v})) continue;
+      const float front = surface.at<float>(static_cast<int>(p.v + 0.5),
+                                            static_cast<int>(p.u + 0.5));
+      const float z = static_cast<float>(1 / p.inverse_z);
+      if (front > 0 && z > front && IsJump(front, z, kJump, kJumpRelative)) {
+        continue;
+      }
+      result.color.at<cv::Vec3b>(y, x) = BilinearColor(color, p.u, p.v);
+      result.seen.at<uint8_t>(y, x) = 255;
+    }
+  }
+  return result;
 }
 
 }  // namespace facet

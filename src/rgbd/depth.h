@@ -37,4 +37,20 @@ inline double DepthSigma(double z) {
 cv::Mat WarpDepthToColor(const cv::Mat& depth,
                          const RgbdCalibration& calibration);
 
+// The colour image as the depth camera would see it.
+struct RegisteredColor {
+  cv::Mat color;  // CV_8UC3, size of calibration.depth
+  // CV_8U: 255 where the colour camera sees the surface at that depth pixel; 0
+  // where depth is missing, something hides it from the colour camera, or it
+  // projects outside the colour image.
+  cv::Mat seen;
+};
+
+// Looks every depth pixel up in `color` (CV_8UC3, size of calibration.color),
+// bilinearly. Hidden is what lies more than max(5 cm, 3 % z) behind
+// WarpDepthToColor.
+RegisteredColor RegisterColorToDepth(const cv::Mat& color,
+                                     const cv::Mat& depth,
+                                     const RgbdCalibration& calibration);
+
 }  // namespace facet

@@ -17,6 +17,13 @@ Pose RgbdSequence::PoseFileFromColorCam(
   return color_cam_from_world.Inverse() * calibration_.color_from_depth;
 }
 
+Pose RgbdSequence::ColorCamFromPoseFile(const Pose& world_from_cam) const {
+  if (options_.pose_camera == PoseCamera::kColor) {
+    return world_from_cam.Inverse();
+  }
+  return calibration_.color_from_depth * world_from_cam.Inverse();
+}
+
 std::unique_ptr<RgbdSequence> OpenSequence(const std::string& path,
                                            const SequenceOptions& options) {
   if (!(options.min_depth_m >= 0 &&

@@ -54,6 +54,8 @@ class RgbdSequence {
   }
   // Back to the camera of the pose files: world_from_<pose camera>.
   Pose PoseFileFromColorCam(const Pose& color_cam_from_world) const;
+  // And its inverse: color_cam_from_world of a pose in a pose file.
+  Pose ColorCamFromPoseFile(const Pose& world_from_cam) const;
 
   // The colour image, CV_8UC3 in **RGB** order, size of calibration().color.
   // Throws InputError naming the file when it does not decode or has another

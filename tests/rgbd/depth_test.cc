@@ -141,6 +141,49 @@ TEST(WarpDepthToColor, NothingStaysNothing) {
   EXPECT_EQ(cv::countNonZero(WarpDepthToColor(nothing, c)), 0);
 }
 
+// A picture whose red is the colour camera's column and green its row comes
+// back as the projection of each depth pixel; behind the near square a strip
+// of the wall is unseen, and what leaves the colour image is unseen.
+TEST(RegisterColorToDepth, LooksUpTheProjectionAndKnowsWhatIsHidden) {
+  const RgbdCalibration c = TwoCameras(2);
+  cv::Mat color(c.color.height, c.color.width, CV_8UC3);
+  for (int y = 0; y < color.rows; ++y) {
+    for (int x = 0; x < color.cols; ++x) {
+      color.at<cv::Vec3b>(y, x) =
+          cv::Vec3b(static_cast<uint8_t>(x), static_cast<uint8_t>(y), 9);
+    }
+  }
+  cv::Mat depth = RenderPlane(c.depth, Eigen::Vector3d::UnitZ(), 3.0);
+  depth(cv::Rect(30, 20, 20, 20)).setTo(0.6f);
+  depth.at<float>(5, 40) = 0;
+  const RegisteredColor registered = RegisterColorToDepth(color, depth, c);
+  int hidden = 0;
+  for (int y = 0; y < depth.rows; ++y) {
+    for (int x = 0; x < depth.cols; ++x) {
+      const bool seen = registered.seen.at<uint8_t>(y, x) != 0;
+      const Eigen::Vector3d p =
+          c.color_from_depth *
+          Eigen::Vector3d(depth.at<float>(y, x) * c.depth.Unproject(x, y));
+      if (p.z() <= 0.1 || !c.color.Contains(c.color.Project(p))) {
+        EXPECT_FALSE(seen);
+        continue;
+      }
+      const Eigen::Vector2d u = c.color.Project(p);
+      if (seen) {
+        EXPECT_NEAR(registered.color.at<cv::Vec3b>(y, x)[0], u.x(), 0.51);
+        EXPECT_NEAR(registered.color.at<cv::Vec3b>(y, x)[1], u.y(), 0.51);
+      } else {
+        ++hidden;
+        EXPECT_GT(depth.at<float>(y, x), 1);  // the wall
+        EXPECT_TRUE(y >= 15 && y < 45 && x >= 25 && x < 55) << x << " " << y;
+      }
+    }
+  }
+  // Baseline 3 cm: the shadow is f b (1/0.6 - 1/3) = 3 px wide, 20 px high.
+  EXPECT_GE(hidden, 40);
+  EXPECT_LE(hidden, 120);
+}
+
 cv::Mat Halves(float left, float right) {
   cv::Mat depth(20, 30, CV_32F, cv::Scalar(left));
   depth(cv::Rect(15, 0, 15, 20)).setTo(right);

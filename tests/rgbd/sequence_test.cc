@@ -76,6 +76,9 @@ TEST(Sequence, PosesGoBackToTheFileInEveryConvention) {
         const Pose in_file =
             sequence->PoseFileFromColorCam(sequence->color_cam_from_world(i));
         EXPECT_LT(Difference(in_file, TinySequence::WorldFromCam(i)), 1e-7);
+        EXPECT_LT(Difference(sequence->ColorCamFromPoseFile(in_file),
+                             sequence->color_cam_from_world(i)),
+                  1e-12);
       }
     }
   }
