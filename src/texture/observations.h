@@ -29,15 +29,15 @@ struct Observations {
 struct VisibilityOptions {
   double min_depth_m = 0.3, max_depth_m = 6.0;  // z of the texel [m]
   double image_margin_px = 5;                   // inside the colour image
-  bool test_occlusion = true;      // against the simplified mesh
+  bool test_occlusion = true;                   // against the simplified mesh
   double occlusion_tolerance_m = 0.02;
-  bool test_sensor_depth = true;   // |D - z| <= max(min_tol, 3 sigma(z) + 0.02)
+  bool test_sensor_depth = true;  // |D - z| <= max(min_tol, 3 sigma(z) + 0.02)
   double min_depth_tolerance_m = 0.03;
   bool allow_missing_depth = false;
-  bool test_angle = true;          // cos of viewing angle at the plane
+  bool test_angle = true;  // cos of viewing angle at the plane
   double max_angle_deg = 75;
-  bool test_depth_edges = true;    // away from jumps of the sensor depth
-  double depth_edge_jump_m = 0.05;     // jump > max(this, rel * z)
+  bool test_depth_edges = true;     // away from jumps of the sensor depth
+  double depth_edge_jump_m = 0.05;  // jump > max(this, rel * z)
   double depth_edge_jump_rel = 0.03;
   int depth_edge_dilate_px = 3;
   int min_views = 2;  // texels seen by fewer keyframes leave the problem
@@ -50,5 +50,23 @@ struct VisibilityCounts {
          depth_missing = 0, depth_edge = 0, depth_disagrees = 0, occluded = 0,
          too_few_views = 0, used = 0;
 };
+
+// Which keyframes see which texels. A texel is judged by its plane point q
+// (distance, image, angle, sensor depth) and by the ray to its mesh point p
+// (occlusion); see texture/visibility.h.
+//   planes      by cluster id: n.x + w = 0
+//   mesh, scene the simplified mesh the texels lie on
+//   keyframes   indices into sequence.frames()
+//   color_cam_from_world  one a keyframe
+// Depth images that do not decode throw InputError. `counts` may be null.
+Observations ComputeObservations(const TexelSet& texels,
+                                 const std::vector<Plane>& planes,
+                                 const TriMesh& mesh,
+                                 const RayScene& scene,
+                                 const RgbdSequence& sequence,
+                                 const std::vector<int>& keyframes,
+                                 const std::vector<Pose>& color_cam_from_world,
+                                 const VisibilityOptions& options,
+                                 VisibilityCounts* counts = nullptr);
 
 }  // namespace facet

@@ -1,0 +1,142 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+#include "texture/observations.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "texture/visibility.h"
+#include "util/errors.h"
+#include "util/parallel_for.h"
+
+namespace facet {
+namespace {
+
+using Eigen::Vector3f;
+
+// Consecutive texels of one plane that are refused together if possible.
+constexpr size_t kBlockTexels = 64;
+
+struct TexelBlock {
+  size_t begin = 0, end = 0;
+  Ball ball;
+};
+
+struct FrameResult {
+  std::vector<uint32_t> texel;
+  std::array<size_t, kNumSights> sights = {};
+};
+
+std::vector<Vector3f> PlanePoints(const TexelSet& texels,
+                                  const std::vector<Plane>& planes) {
+  std::vector<Vector3f> points(texels.size());
+  ParallelFor(
+      0,
+      texels.size(),
+      [&](size_t i) {
+        const Plane& plane = planes[texels.plane[i]];
+        points[i] =
+            plane.Project(texels.position[i].cast<double>()).cast<float>();
+      },
+      4096);
+  return points;
+}
+
+std::vector<TexelBlock> MakeBlocks(const TexelSet& texels,
+                                   const std::vector<Vector3f>& points) {
+  std::vector<TexelBlock> blocks;
+  for (size_t begin = 0; begin < texels.size();) {
+    size_t end = begin + 1;
+    while (end < texels.size() && end - begin < kBlockTexels &&
+           texels.plane[end] == texels.plane[begin]) {
+      ++end;
+    }
+    blocks.push_back(
+        {begin, end, BallAround(points.data() + begin, end - begin)});
+    begin = end;
+  }
+  return blocks;
+}
+
+}  // namespace
+
+Observations ComputeObservations(const TexelSet& texels,
+                                 const std::vector<Plane>& planes,
+                                 const TriMesh& /*mesh*/,
+                                 const RayScene& scene,
+                                 const RgbdSequence& sequence,
+                                 const std::vector<int>& keyframes,
+                                 const std::vector<Pose>& color_cam_from_world,
+                                 const VisibilityOptions& options,
+                                 VisibilityCounts* counts) {
+  if (texels.size() > std::numeric_limits<uint32_t>::max()) {
+    throw UnsolvableError(
+        "more than 4 billion texels; raise the texel size or the stride");
+  }
+  const std::vector<Vector3f> points = PlanePoints(texels, planes);
+  const std::vector<TexelBlock> blocks = MakeBlocks(texels, points);
+  const bool needs_depth =
+      options.test_sensor_depth || options.test_depth_edges;
+  std::vector<FrameResult> results(keyframes.size());
+  ParallelFor(0, keyframes.size(), [&](size_t k) {
+    const FrameView view(
+        sequence.calibration(),
+        color_cam_from_world[k],
+        needs_depth ? sequence.LoadDepth(keyframes[k]) : cv::Mat(),
+        scene,
+        options);
+    FrameResult& result = results[k];
+    for (const TexelBlock& block : blocks) {
+      const Sight all = view.TestBall(block.ball);
+      if (all != Sight::kVisible) {
+        result.sights[static_cast<int>(all)] += block.end - block.begin;
+        continue;
+      }
+      const Vector3f normal =
+          planes[texels.plane[block.begin]].normal.cast<float>();
+      for (size_t i = block.begin; i < block.end; ++i) {
+        const Sight sight = view.Test(texels.position[i], points[i], normal);
+        ++result.sights[static_cast<int>(sight)];
+        if (sight == Sight::kVisible) {
+          result.texel.push_back(static_cast<uint32_t>(i));
+        }
+      }
+    }
+  });
+
+  std::vector<uint16_t> views(texels.size(), 0);
+  for (const FrameResult& result : results) {
+    for (uint32_t i : result.texel) ++views[i];
+  }
+  Observations observations;
+  observations.begin.push_back(0);
+  VisibilityCounts total;
+  for (FrameResult& result : results) {
+    for (uint32_t i : result.texel) {
+      if (views[i] >= options.min_views) {
+        observations.texel.push_back(i);
+      } else {
+        ++total.too_few_views;
+      }
+    }
+    observations.begin.push_back(observations.texel.size());
+    std::vector<uint32_t>().swap(result.texel);
+    const auto count = [&](Sight sight) {
+      return result.sights[static_cast<int>(sight)];
+    };
+    total.behind_or_far += count(Sight::kBehindOrFar);
+    total.outside_image += count(Sight::kOutsideImage);
+    total.grazing += count(Sight::kGrazing);
+    total.depth_missing += count(Sight::kDepthMissing);
+    total.depth_edge += count(Sight::kDepthEdge);
+    total.depth_disagrees += count(Sight::kDepthDisagrees);
+    total.occluded += count(Sight::kOccluded);
+  }
+  total.candidates = texels.size() * keyframes.size();
+  total.used = observations.size();
+  if (counts) *counts = total;
+  return observations;
+}
+
+}  // namespace facet

@@ -1,0 +1,173 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+#include "texture/visibility.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "rgbd/depth.h"
+
+namespace facet {
+namespace {
+
+using Eigen::Vector3f;
+
+constexpr float kNothing = 1e9f;  // z of pixels where no mesh is
+
+}  // namespace
+
+Ball BallAround(const Vector3f* points, size_t count) {
+  Ball ball;
+  if (count == 0) return ball;
+  Vector3f low = points[0], high = points[0];
+  for (size_t i = 1; i < count; ++i) {
+    low = low.cwiseMin(points[i]);
+    high = high.cwiseMax(points[i]);
+  }
+  ball.center = 0.5f * (low + high);
+  float squared = 0;
+  for (size_t i = 0; i < count; ++i) {
+    squared = std::max(squared, (points[i] - ball.center).squaredNorm());
+  }
+  ball.radius = std::sqrt(squared) * 1.0001f + 1e-5f;
+  return ball;
+}
+
+FrameView::FrameView(const RgbdCalibration& calibration,
+                     const Pose& color_cam_from_world,
+                     const cv::Mat& depth,
+                     const RayScene& scene,
+                     const VisibilityOptions& options)
+    : scene_(scene),
+      options_(options),
+      color_(calibration.color),
+      depth_camera_(calibration.depth),
+      rotation_(color_cam_from_world.RotationMatrix().cast<float>()),
+      translation_(color_cam_from_world.translation.cast<float>()),
+      center_(color_cam_from_world.CenterInSource().cast<float>()),
+      min_cos_(
+          static_cast<float>(std::cos(options.max_angle_deg * M_PI / 180.0))),
+      depth_(depth) {
+  const Pose depth_cam_from_world =
+      calibration.color_from_depth.Inverse() * color_cam_from_world;
+  depth_rotation_ = depth_cam_from_world.RotationMatrix().cast<float>();
+  depth_translation_ = depth_cam_from_world.translation.cast<float>();
+  if (options.test_depth_edges && !depth.empty()) {
+    edges_ = DepthEdgeMask(depth,
+                           options.depth_edge_jump_m,
+                           options.depth_edge_jump_rel,
+                           options.depth_edge_dilate_px);
+  }
+  if (options.test_occlusion) {
+    DepthRender render = RenderDepth(scene, color_, color_cam_from_world);
+    for (float& z : render.depth) z = z > 0 ? z : kNothing;
+    const cv::Mat z(render.height, render.width, CV_32F, render.depth.data());
+    cv::erode(z, nearest_, cv::Mat::ones(3, 3, CV_8U));
+    cv::dilate(z, farthest_, cv::Mat::ones(3, 3, CV_8U));
+  }
+  const double margin = options.image_margin_px;
+  const auto left = color_.Unproject(margin, margin);
+  const auto right =
+      color_.Unproject(color_.width - 1 - margin, color_.height - 1 - margin);
+  sides_[0] = Vector3f(1, 0, static_cast<float>(-left.x())).normalized();
+  sides_[1] = Vector3f(0, 1, static_cast<float>(-left.y())).normalized();
+  sides_[2] = Vector3f(-1, 0, static_cast<float>(right.x())).normalized();
+  sides_[3] = Vector3f(0, -1, static_cast<float>(right.y())).normalized();
+}
+
+Sight FrameView::TestBall(const Ball& ball) const {
+  const Vector3f y = rotation_ * ball.center + translation_;
+  const float low = static_cast<float>(options_.min_depth_m);
+  const float high = static_cast<float>(options_.max_depth_m);
+  if (y.z() + ball.radius < low || y.z() - ball.radius > high) {
+    return Sight::kBehindOrFar;
+  }
+  // Some points may be too near or far: those have to be told apart.
+  if (y.z() - ball.radius < low || y.z() + ball.radius > high) {
+    return Sight::kVisible;
+  }
+  for (const Vector3f& side : sides_) {
+    if (side.dot(y) < -ball.radius) return Sight::kOutsideImage;
+  }
+  return Sight::kVisible;
+}
+
+Sight FrameView::Test(const Vector3f& p,
+                      const Vector3f& q,
+                      const Vector3f& normal) const {
+  const Vector3f y = rotation_ * q + translation_;
+  if (!(y.z() > static_cast<float>(options_.min_depth_m)) ||
+      y.z() > static_cast<float>(options_.max_depth_m)) {
+    return Sight::kBehindOrFar;
+  }
+  const Eigen::Vector2d u = color_.Project<double>(y.cast<double>());
+  if (!color_.Contains(u, options_.image_margin_px)) {
+    return Sight::kOutsideImage;
+  }
+  const Vector3f view = center_ - q;
+  const float along = normal.dot(view);
+  if (options_.test_angle &&
+      (along <= 0 ||
+       along * along < min_cos_ * min_cos_ * view.squaredNorm())) {
+    return Sight::kGrazing;
+  }
+  const Sight sensor = TestSensorDepth(q);
+  if (sensor != Sight::kVisible) return sensor;
+  if (options_.test_occlusion && IsOccluded(p)) return Sight::kOccluded;
+  return Sight::kVisible;
+}
+
+Sight FrameView::TestSensorDepth(const Vector3f& q) const {
+  if (!options_.test_sensor_depth && !options_.test_depth_edges) {
+    return Sight::kVisible;
+  }
+  const Vector3f y = depth_rotation_ * q + depth_translation_;
+  float measured = 0;
+  int col = -1, row = -1;
+  if (y.z() > 0) {
+    const Eigen::Vector2d u = depth_camera_.Project<double>(y.cast<double>());
+    // Compared as doubles: far outside, an int would overflow.
+    if (u.x() > -0.5 && u.y() > -0.5 && u.x() < depth_camera_.width - 0.5 &&
+        u.y() < depth_camera_.height - 0.5) {
+      col = std::min(static_cast<int>(u.x() + 0.5), depth_camera_.width - 1);
+      row = std::min(static_cast<int>(u.y() + 0.5), depth_camera_.height - 1);
+      if (!depth_.empty()) measured = depth_.at<float>(row, col);
+    }
+  }
+  const bool missing = !(measured > 0);
+  if (options_.test_sensor_depth && missing && !options_.allow_missing_depth) {
+    return Sight::kDepthMissing;
+  }
+  if (options_.test_depth_edges && col >= 0 && !edges_.empty() &&
+      edges_.at<uint8_t>(row, col)) {
+    return Sight::kDepthEdge;
+  }
+  if (options_.test_sensor_depth && !missing) {
+    const double tolerance =
+        std::max(options_.min_depth_tolerance_m, 3 * DepthSigma(y.z()) + 0.02);
+    if (std::abs(measured - y.z()) > tolerance) return Sight::kDepthDisagrees;
+  }
+  return Sight::kVisible;
+}
+
+bool FrameView::IsOccluded(const Vector3f& p) const {
+  const Vector3f y = rotation_ * p + translation_;
+  if (!(y.z() > 1e-3f)) return true;
+  const float limit =
+      y.z() - static_cast<float>(options_.occlusion_tolerance_m);
+  const Eigen::Vector2d u = color_.Project<double>(y.cast<double>());
+  if (color_.Contains(u, -0.49)) {
+    const int col = static_cast<int>(u.x() + 0.5);
+    const int row = static_cast<int>(u.y() + 0.5);
+    if (nearest_.at<float>(row, col) >= limit) return false;
+    if (farthest_.at<float>(row, col) < limit) return true;
+  }
+  // z grows linearly along the ray: hits with z < limit have t < limit / z.
+  const Eigen::Vector3d origin = center_.cast<double>();
+  const double t_max = limit / y.z();
+  return t_max > 0 &&
+         scene_.Occluded(origin, p.cast<double>() - origin, 0, t_max);
+}
+
+}  // namespace facet

@@ -1,0 +1,80 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+//
+// Does a keyframe see a point of the mesh? (method, ch. 6)
+//
+// Occlusion: the mesh is rendered once a keyframe. A point whose depth agrees
+// with all 3 x 3 pixels around it is visible, one behind all of them is hidden;
+// in between - silhouettes, grazing faces - a ray to the point decides.
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+#include "render/ray_scene.h"
+#include "rgbd/camera.h"
+#include "texture/observations.h"
+
+namespace facet {
+
+// The outcome for one point: the first test that fails, in this order.
+enum class Sight {
+  kBehindOrFar,
+  kOutsideImage,
+  kGrazing,
+  kDepthMissing,
+  kDepthEdge,
+  kDepthDisagrees,
+  kOccluded,
+  kVisible,
+};
+inline constexpr int kNumSights = 8;
+
+// A ball that holds a group of points, to refuse them at once.
+struct Ball {
+  Eigen::Vector3f center = Eigen::Vector3f::Zero();
+  float radius = 0;  // [m]
+};
+Ball BallAround(const Eigen::Vector3f* points, size_t count);
+
+// A keyframe prepared for visibility tests. Test() is const and may run on many
+// threads.
+class FrameView {
+ public:
+  // `depth` as from RgbdSequence::LoadDepth; may be empty when neither depth
+  // test is on. `scene` must outlive the view.
+  FrameView(const RgbdCalibration& calibration,
+            const Pose& color_cam_from_world,
+            const cv::Mat& depth,
+            const RayScene& scene,
+            const VisibilityOptions& options);
+
+  // p: the point on the mesh; q: the point that is coloured (plane point);
+  // normal: outward, unit.
+  Sight Test(const Eigen::Vector3f& p,
+             const Eigen::Vector3f& q,
+             const Eigen::Vector3f& normal) const;
+
+  // The verdict on all points q of a ball, if it is the same one without
+  // looking closer (kBehindOrFar or kOutsideImage); else kVisible.
+  Sight TestBall(const Ball& ball) const;
+
+  const Eigen::Vector3f& center() const { return center_; }
+
+ private:
+  bool IsOccluded(const Eigen::Vector3f& p) const;
+  Sight TestSensorDepth(const Eigen::Vector3f& q) const;
+
+  const RayScene& scene_;
+  VisibilityOptions options_;
+  Pinhole color_, depth_camera_;
+  Eigen::Matrix3f rotation_, depth_rotation_;  // color / depth cam_from_world
+  Eigen::Vector3f translation_, depth_translation_;
+  Eigen::Vector3f center_;  // of the colour camera, world
+  float min_cos_ = 0;
+  cv::Mat depth_, edges_;
+  cv::Mat nearest_, farthest_;  // 3 x 3 minimum and maximum of the z-buffer
+  Eigen::Vector3f sides_[4];    // of the frustum, unit, inwards, camera frame
+};
+
+}  // namespace facet
