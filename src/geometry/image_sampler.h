@@ -26,8 +26,8 @@ inline Sample SampleBilinear(const ImageView<float>& image, double u, double v) 
   const double max_u = image.width - 1.0, max_v = image.height - 1.0;
   const bool u_inside = u >= 0 && u <= max_u, v_inside = v >= 0 && v <= max_v;
   s.clamped = !(u_inside && v_inside);
-  u = std::min(std::max(u, 0.0), max_u);  // this order also tames NaN
-  v = std::min(std::max(v, 0.0), max_v);
+  u = std::min(std::max(0.0, u), max_u);  // this order turns NaN into 0
+  v = std::min(std::max(0.0, v), max_v);
   const int x = std::min(static_cast<int>(u), image.width - 2);
   const int y = std::min(static_cast<int>(v), image.height - 2);
   const double a = u - x, b = v - y;

@@ -81,8 +81,9 @@ inline Pose ExpSe3(const Vector6d& xi) {
     v = Eigen::Matrix3d::Identity() + 0.5 * w + w * w / 6.0;
   } else {
     q = Eigen::Quaterniond(Eigen::AngleAxisd(theta, omega / theta));
+    const double half_sine = std::sin(0.5 * theta);  // 1 - cos without loss
     v = Eigen::Matrix3d::Identity() +
-        (1 - std::cos(theta)) / (theta * theta) * w +
+        2 * half_sine * half_sine / (theta * theta) * w +
         (theta - std::sin(theta)) / (theta * theta * theta) * w * w;
   }
   return Pose(q, v * upsilon);

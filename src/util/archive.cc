@@ -16,9 +16,8 @@ void ArchiveWriter::AddBytes(const std::string& name,
                              size_t element_size,
                              size_t count,
                              const void* data) {
-  arrays_.push_back({{"name", name},
-                     {"element_size", element_size},
-                     {"count", count}});
+  arrays_.push_back(
+      {{"name", name}, {"element_size", element_size}, {"count", count}});
   if (count > 0) {
     bytes_.append(static_cast<const char*>(data), element_size * count);
   }
@@ -52,15 +51,20 @@ ArchiveReader::ArchiveReader(const std::string& path)
   }
   meta_ = header["meta"];
   size_t offset = 16 + length;
-  for (const nlohmann::json& array : header["arrays"]) {
-    const Entry entry = {array.at("element_size").get<size_t>(),
-                         array.at("count").get<size_t>(), offset};
-    if (entry.element_size == 0 ||
-        entry.count > (bytes_.size() - offset) / entry.element_size) {
-      fail();
+  try {
+    for (const nlohmann::json& array : header["arrays"]) {
+      const Entry entry = {array.at("element_size").get<size_t>(),
+                           array.at("count").get<size_t>(),
+                           offset};
+      if (entry.element_size == 0 ||
+          entry.count > (bytes_.size() - offset) / entry.element_size) {
+        fail();
+      }
+      offset += entry.element_size * entry.count;
+      entries_[array.at("name").get<std::string>()] = entry;
     }
-    offset += entry.element_size * entry.count;
-    entries_[array.at("name").get<std::string>()] = entry;
+  } catch (const nlohmann::json::exception&) {
+    fail();
   }
 }
 
