@@ -15,6 +15,7 @@ find_package(TinyGLTF REQUIRED)
 find_path(STB_INCLUDE_DIR stb/stb_rect_pack.h REQUIRED)
 if(FACET_BUILD_APPS)
   find_package(Open3D REQUIRED)
+  find_package(OpenMP REQUIRED COMPONENTS CXX)  # to turn Open3D's threads off
 endif()
 if(FACET_BUILD_TESTS)
   find_package(GTest REQUIRED)
