@@ -1,0 +1,433 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+#include "texture/bake.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "rgbd/blur.h"
+#include "texture/bake_texels.h"
+#include "texture/fill_texture.h"
+#include "texture/visibility.h"
+#include "util/errors.h"
+#include "util/parallel_for.h"
+
+namespace facet {
+namespace {
+
+using Eigen::Vector2f;
+using Eigen::Vector3f;
+
+// A bit a texel of each tile that a keyframe sees at all.
+struct FrameBits {
+  std::vector<uint32_t> tile;
+  std::vector<uint32_t> first_word;
+  std::vector<uint64_t> words;
+};
+
+struct TileView {
+  int keyframe = 0;
+  const uint64_t* words = nullptr;
+};
+
+// One image lookup and what it counts.
+struct ColorSample {
+  Vector3f rgb = Vector3f::Zero();  // 0-255
+  float weight = 0;                 // under e = 1; 0 = not there
+};
+
+float Luma(const Vector3f& rgb) {
+  return (0.299f * rgb.x() + 0.587f * rgb.y() + 0.114f * rgb.z()) / 255.0f;
+}
+
+Vector3f PixelAt(const cv::Mat& rgb, int x, int y) {
+  const uint8_t* p = rgb.ptr<uint8_t>(y) + 3 * x;
+  return {static_cast<float>(p[0]),
+          static_cast<float>(p[1]),
+          static_cast<float>(p[2])};
+}
+
+// u must lie within the pixel centres.
+Vector3f Bilinear(const cv::Mat& rgb, float u, float v) {
+  const int x = std::min(static_cast<int>(u), rgb.cols - 2);
+  const int y = std::min(static_cast<int>(v), rgb.rows - 2);
+  const float a = u - static_cast<float>(x), b = v - static_cast<float>(y);
+  const uint8_t* r0 = rgb.ptr<uint8_t>(y) + 3 * x;
+  const uint8_t* r1 = r0 + rgb.step[0];
+  const float w00 = (1 - a) * (1 - b), w10 = a * (1 - b), w01 = (1 - a) * b,
+              w11 = a * b;
+  Vector3f color;
+  for (int k = 0; k < 3; ++k) {
+    color[k] = w00 * r0[k] + w10 * r0[k + 3] + w01 * r1[k] + w11 * r1[k + 3];
+  }
+  return color;
+}
+
+void CatmullRomWeights(float t, float* w) {
+  w[0] = t * (-0.5f + t * (1 - 0.5f * t));
+  w[1] = 1 + t * t * (-2.5f + 1.5f * t);
+  w[2] = t * (0.5f + t * (2 - 1.5f * t));
+  w[3] = t * t * (-0.5f + 0.5f * t);
+}
+
+Vector3f Bicubic(const cv::Mat& rgb, float u, float v) {
+  const int x = static_cast<int>(u), y = static_cast<int>(v);
+  float wx[4], wy[4];
+  CatmullRomWeights(u - static_cast<float>(x), wx);
+  CatmullRomWeights(v - static_cast<float>(y), wy);
+  Vector3f color = Vector3f::Zero();
+  for (int j = 0; j < 4; ++j) {
+    const int row = std::clamp(y + j - 1, 0, rgb.rows - 1);
+    for (int i = 0; i < 4; ++i) {
+      const int col = std::clamp(x + i - 1, 0, rgb.cols - 1);
+      color += wy[j] * wx[i] * PixelAt(rgb, col, row);
+    }
+  }
+  return color;
+}
+
+// Sharpness of every keyframe relative to the median one.
+std::vector<float> Sharpness(const KeyframeImages& images, double power) {
+  std::vector<float> sharpness(images.size(), 1.0f);
+  if (!(power > 0) || images.size() == 0) return sharpness;
+  ParallelFor(0, images.size(), [&](size_t k) {
+    const cv::Mat& luma = images.luma[k];
+    const ImageView<float> view = {luma.ptr<float>(),
+                                   luma.cols,
+                                   luma.rows,
+                                   static_cast<ptrdiff_t>(luma.step1())};
+    sharpness[k] = static_cast<float>(1 - CreteBlur(view));
+  });
+  std::vector<float> sorted = sharpness;
+  std::sort(sorted.begin(), sorted.end());
+  const float median = sorted[sorted.size() / 2];
+  for (float& s : sharpness) {
+    s = median > 0 ? std::max(s / median, 1e-3f) : 1.0f;
+  }
+  return sharpness;
+}
+
+class Baker {
+ public:
+  Baker(const TriMesh& mesh,
+        const std::vector<Plane>& planes,
+        const Atlas& atlas,
+        const RayScene& scene,
+        const RgbdSequence& sequence,
+        const std::vector<int>& keyframes,
+        const KeyframeImages& images,
+        const std::vector<Pose>& color_cam_from_world,
+        const WarpLattice& lattice,
+        const std::vector<double>& warps,
+        const VisibilityOptions& visibility,
+        const BakeOptions& options)
+      : mesh_(mesh),
+        planes_(planes),
+        atlas_(atlas),
+        scene_(scene),
+        sequence_(sequence),
+        keyframes_(keyframes),
+        images_(images),
+        poses_(color_cam_from_world),
+        lattice_(lattice),
+        warps_(warps),
+        visibility_(visibility),
+        options_(options),
+        camera_(sequence.calibration().color),
+        texels_(MakeBakeTexels(mesh, planes, atlas, options.ring_px)) {}
+
+  std::vector<cv::Mat> Run(BakeReport* report) {
+    FindVisibility();
+    sharpness_ = Sharpness(images_, options_.sharpness_power);
+    colors_.resize(texels_.size(), Vector3f::Constant(255));
+    seen_.assign(texels_.size(), 0);
+    tile_reports_.resize(texels_.tiles.size());
+    ParallelFor(0, texels_.tiles.size(), [this](size_t t) { ColorTile(t); });
+    BakeReport total;
+    for (const BakeReport& part : tile_reports_) {
+      total.texels += part.texels;
+      total.seen += part.seen;
+      total.samples += part.samples;
+      total.dropped += part.dropped;
+    }
+    total.mean_views =
+        total.seen ? 1.0 * total.samples / static_cast<double>(total.seen) : 0;
+    std::vector<cv::Mat> pages =
+        FillPages(mesh_, atlas_, texels_, seen_, options_.inpaint, &colors_);
+    if (report) {
+      total.unseen_mask = UnseenMask(atlas_, texels_, seen_);
+      *report = std::move(total);
+    }
+    return pages;
+  }
+
+ private:
+  Vector3f Normal(const Chart& chart, size_t texel) const {
+    if (chart.steep) {
+      return mesh_.FaceCross(texels_.face[texel]).normalized().cast<float>();
+    }
+    const Vector3f n = planes_[chart.plane].normal.cast<float>();
+    return chart.back ? Vector3f(-n) : n;
+  }
+
+  void FindVisibility() {
+    const auto& tiles = texels_.tiles;
+    std::vector<Ball> balls(tiles.size());
+    ParallelFor(0, tiles.size(), [&](size_t t) {
+      balls[t] = BallAround(texels_.q.data() + tiles[t].begin,
+                            tiles[t].owned_end - tiles[t].begin);
+    });
+    frames_.resize(keyframes_.size());
+    ParallelFor(0, keyframes_.size(), [&](size_t k) { LookFrom(k, balls); });
+    tile_views_.resize(tiles.size());
+    for (size_t k = 0; k < frames_.size(); ++k) {
+      const FrameBits& bits = frames_[k];
+      for (size_t i = 0; i < bits.tile.size(); ++i) {
+        tile_views_[bits.tile[i]].push_back(
+            {static_cast<int>(k), bits.words.data() + bits.first_word[i]});
+      }
+    }
+  }
+
+  void LookFrom(size_t k, const std::vector<Ball>& balls) {
+    const bool needs_depth =
+        visibility_.test_sensor_depth || visibility_.test_depth_edges;
+    const FrameView view(
+        sequence_.calibration(),
+        poses_[k],
+        needs_depth ? sequence_.LoadDepth(keyframes_[k]) : cv::Mat(),
+        scene_,
+        visibility_);
+    FrameBits& bits = frames_[k];
+    std::vector<uint64_t> words;
+    for (size_t t = 0; t < texels_.tiles.size(); ++t) {
+      if (view.TestBall(balls[t]) != Sight::kVisible) continue;
+      const BakeTile& tile = texels_.tiles[t];
+      const Chart& chart = atlas_.charts[tile.chart];
+      Vector3f normal = Normal(chart, tile.begin);
+      if (visibility_.test_angle && !chart.steep &&
+          normal.dot(view.center() - balls[t].center) < -balls[t].radius) {
+        continue;
+      }
+      words.assign((tile.owned_end - tile.begin + 63) / 64, 0);
+      bool any = false;
+      for (uint32_t i = tile.begin; i < tile.owned_end; ++i) {
+        if (chart.steep) normal = Normal(chart, i);
+        if (view.Test(texels_.p[i], texels_.q[i], normal) != Sight::kVisible) {
+          continue;
+        }
+        const uint32_t bit = i - tile.begin;
+        words[bit / 64] |= uint64_t{1} << (bit % 64);
+        any = true;
+      }
+      if (!any) continue;
+      bits.tile.push_back(static_cast<uint32_t>(t));
+      bits.first_word.push_back(static_cast<uint32_t>(bits.words.size()));
+      bits.words.insert(bits.words.end(), words.begin(), words.end());
+    }
+  }
+
+  // w before the power e.
+  float Weight(float cosine,
+               float z,
+               float sharpness,
+               const Vector2f& u) const {
+    float log_weight =
+        static_cast<float>(options_.angle_power) *
+            std::log2(std::max(cosine, 1e-3f)) -
+        static_cast<float>(options_.depth_power) * std::log2(z) +
+        static_cast<float>(options_.sharpness_power) * std::log2(sharpness);
+    float weight = std::exp2(log_weight);
+    if (options_.border_feather_px > 0) {
+      const float border =
+          std::min({u.x(),
+                    u.y(),
+                    static_cast<float>(camera_.width - 1) - u.x(),
+                    static_cast<float>(camera_.height - 1) - u.y()});
+      const float feather = static_cast<float>(options_.border_feather_px);
+      weight *= std::clamp(border / feather, 1e-3f, 1.0f);
+    }
+    return weight;
+  }
+
+  // All texels of a tile in one keyframe.
+  void SampleView(const BakeTile& tile,
+                  const TileView& view,
+                  ColorSample* samples) const {
+    const Pose& pose = poses_[view.keyframe];
+    const Eigen::Matrix3f rotation = pose.RotationMatrix().cast<float>();
+    const Vector3f translation = pose.translation.cast<float>();
+    const Vector3f center = pose.CenterInSource().cast<float>();
+    const cv::Mat& rgb = images_.rgb[view.keyframe];
+    const double* warp =
+        warps_.empty()
+            ? nullptr
+            : warps_.data() + 2ul * lattice_.NumVertices() * view.keyframe;
+    const Chart& chart = atlas_.charts[tile.chart];
+    Vector3f normal = Normal(chart, tile.begin);
+    for (uint32_t i = tile.begin; i < tile.end; ++i) {
+      ColorSample& sample = samples[i - tile.begin];
+      sample = ColorSample();
+      const uint32_t bit = texels_.source[i] - tile.begin;
+      if (!(view.words[bit / 64] >> (bit % 64) & 1)) continue;
+      const Vector3f y = rotation * texels_.q[i] + translation;
+      if (!(y.z() > 0.01f)) continue;
+      Vector2f u(static_cast<float>(camera_.fx) * y.x() / y.z() +
+                     static_cast<float>(camera_.cx),
+                 static_cast<float>(camera_.fy) * y.y() / y.z() +
+                     static_cast<float>(camera_.cy));
+      if (warp) u = lattice_.Apply(warp, u.cast<double>()).cast<float>();
+      if (!(u.x() >= 0 && u.y() >= 0 &&
+            u.x() <= static_cast<float>(camera_.width - 1) &&
+            u.y() <= static_cast<float>(camera_.height - 1))) {
+        continue;
+      }
+      if (chart.steep) normal = Normal(chart, i);
+      const float cosine = normal.dot((center - texels_.q[i]).normalized());
+      sample.rgb = options_.sampler == BakeSampler::kBilinear
+                       ? Bilinear(rgb, u.x(), u.y())
+                       : Bicubic(rgb, u.x(), u.y());
+      sample.weight =
+          Weight(std::abs(cosine), y.z(), sharpness_[view.keyframe], u);
+    }
+  }
+
+  void ColorTile(size_t t) {
+    const BakeTile& tile = texels_.tiles[t];
+    BakeReport& report = tile_reports_[t];
+    const size_t n = tile.end - tile.begin, owned = tile.owned_end - tile.begin;
+    report.texels = owned;
+    const std::vector<TileView>& views = tile_views_[t];
+    std::vector<ColorSample> samples(n * views.size());
+    for (size_t v = 0; v < views.size(); ++v) {
+      SampleView(tile, views[v], samples.data() + n * v);
+      for (size_t i = 0; i < owned; ++i) {
+        report.samples += samples[n * v + i].weight > 0;
+      }
+    }
+    for (int pass = 0; pass < options_.robust_passes; ++pass) {
+      DropOutliers(n, owned, views.size(), &samples, &report.dropped);
+    }
+    const std::vector<ColorSample> mean = WeightedMean(
+        samples, n, views.size(), static_cast<float>(options_.best_view_power));
+    for (size_t i = 0; i < n; ++i) {
+      if (!(mean[i].weight > 0)) continue;
+      colors_[tile.begin + i] = mean[i].rgb;
+      seen_[tile.begin + i] = 1;
+      report.seen += i < owned;
+    }
+  }
+
+  static std::vector<ColorSample> WeightedMean(
+      const std::vector<ColorSample>& samples,
+      size_t n,
+      size_t num_views,
+      float power) {
+    std::vector<ColorSample> sum(n);
+    for (size_t v = 0; v < num_views; ++v) {
+      for (size_t i = 0; i < n; ++i) {
+        const ColorSample& sample = samples[n * v + i];
+        if (!(sample.weight > 0)) continue;
+        const float w = power == 1
+                            ? sample.weight
+                            : std::exp2(power * std::log2(sample.weight));
+        sum[i].rgb += w * sample.rgb;
+        sum[i].weight += w;
+      }
+    }
+    for (ColorSample& s : sum) {
+      if (s.weight > 0) s.rgb /= s.weight;
+    }
+    return sum;
+  }
+
+  // Takes away samples far from the mean, unless none would remain.
+  void DropOutliers(size_t n,
+                    size_t owned,
+                    size_t num_views,
+                    std::vector<ColorSample>* samples,
+                    size_t* dropped) const {
+    const std::vector<ColorSample> mean =
+        WeightedMean(*samples, n, num_views, 1);
+    const float limit = static_cast<float>(options_.robust_luma);
+    std::vector<uint16_t> good(n, 0);
+    const auto is_far = [&](size_t i, const ColorSample& sample) {
+      return std::abs(Luma(sample.rgb) - Luma(mean[i].rgb)) > limit;
+    };
+    for (size_t v = 0; v < num_views; ++v) {
+      for (size_t i = 0; i < n; ++i) {
+        const ColorSample& sample = (*samples)[n * v + i];
+        good[i] += sample.weight > 0 && !is_far(i, sample);
+      }
+    }
+    for (size_t v = 0; v < num_views; ++v) {
+      for (size_t i = 0; i < n; ++i) {
+        ColorSample& sample = (*samples)[n * v + i];
+        if (!(sample.weight > 0) || good[i] == 0) continue;
+        if (!is_far(i, sample)) continue;
+        sample.weight = 0;
+        *dropped += i < owned;
+      }
+    }
+  }
+
+  const TriMesh& mesh_;
+  const std::vector<Plane>& planes_;
+  const Atlas& atlas_;
+  const RayScene& scene_;
+  const RgbdSequence& sequence_;
+  const std::vector<int>& keyframes_;
+  const KeyframeImages& images_;
+  const std::vector<Pose>& poses_;
+  const WarpLattice& lattice_;
+  const std::vector<double>& warps_;
+  const VisibilityOptions& visibility_;
+  const BakeOptions& options_;
+  const Pinhole camera_;
+  const BakeTexels texels_;
+  std::vector<FrameBits> frames_;                  // by keyframe
+  std::vector<std::vector<TileView>> tile_views_;  // ascending keyframe
+  std::vector<float> sharpness_;
+  std::vector<Vector3f> colors_;  // by texel
+  std::vector<uint8_t> seen_;
+  std::vector<BakeReport> tile_reports_;
+};
+
+}  // namespace
+
+std::vector<cv::Mat> BakeTexture(const TriMesh& mesh,
+                                 const std::vector<Plane>& planes,
+                                 const Atlas& atlas,
+                                 const RayScene& scene,
+                                 const RgbdSequence& sequence,
+                                 const std::vector<int>& keyframes,
+                                 const KeyframeImages& images,
+                                 const std::vector<Pose>& color_cam_from_world,
+                                 const WarpLattice& lattice,
+                                 const std::vector<double>& warps,
+                                 const VisibilityOptions& visibility,
+                                 const BakeOptions& options,
+                                 BakeReport* report) {
+  if (options.angle_power < 0 || options.depth_power < 0 ||
+      options.sharpness_power < 0 || !(options.best_view_power > 0) ||
+      options.ring_px < 0) {
+    throw OptionsError(
+        "powers of the texture weights must not be negative, and the best-view "
+        "power must be positive");
+  }
+  return Baker(mesh,
+               planes,
+               atlas,
+               scene,
+               sequence,
+               keyframes,
+               images,
+               color_cam_from_world,
+               lattice,
+               warps,
+               visibility,
+               options)
+      .Run(report);
+}
+
+}  // namespace facet

@@ -1,0 +1,209 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+#include "texture/bake_texels.h"
+
+#include <algorithm>
+
+#include "util/parallel_for.h"
+
+namespace facet {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr int kTilePx = 32;
+
+// For every pixel of a chart the owned pixel it belongs to (itself, or the one
+// its gutter ring started from), -1 = none.
+std::vector<int> RootPixels(const std::vector<int>& owners,
+                            int width,
+                            int height,
+                            int ring_px) {
+  std::vector<int> root(owners.size(), -1);
+  std::vector<int> front;
+  for (size_t i = 0; i < owners.size(); ++i) {
+    if (owners[i] < 0) continue;
+    root[i] = static_cast<int>(i);
+    front.push_back(static_cast<int>(i));
+  }
+  // Straight neighbours first: their source is nearer.
+  const int steps[8][2] = {
+      {-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}};
+  for (int ring = 0; ring < ring_px; ++ring) {
+    std::vector<int> next;
+    for (const auto& step : steps) {
+      for (int i : front) {
+        const int col = i % width + step[0], row = i / width + step[1];
+        if (col < 0 || row < 0 || col >= width || row >= height) continue;
+        const int j = row * width + col;
+        if (root[j] >= 0) continue;
+        root[j] = root[i];
+        next.push_back(j);
+      }
+    }
+    front.swap(next);
+  }
+  return root;
+}
+
+Vector3d PointOnFace(const TriMesh& mesh, int face, const Vector2d& b) {
+  const auto& f = mesh.faces[face];
+  return (1 - b.x() - b.y()) * mesh.vertices[f[0]] +
+         b.x() * mesh.vertices[f[1]] + b.y() * mesh.vertices[f[2]];
+}
+
+int LargestFace(const TriMesh& mesh, const Chart& chart) {
+  int best = chart.faces.front();
+  for (int face : chart.faces) {
+    if (mesh.FaceArea(face) > mesh.FaceArea(best)) best = face;
+  }
+  return best;
+}
+
+class ChartTexelizer {
+ public:
+  ChartTexelizer(const TriMesh& mesh,
+                 const std::vector<Plane>& planes,
+                 const Atlas& atlas,
+                 int chart_id,
+                 int ring_px)
+      : mesh_(mesh),
+        plane_(planes[atlas.charts[chart_id].plane]),
+        atlas_(atlas),
+        chart_(atlas.charts[chart_id]),
+        chart_id_(chart_id),
+        ring_px_(ring_px) {}
+
+  BakeTexels Run() {
+    owners_ = ChartOwners(atlas_, chart_id_);
+    bool any = false;
+    for (int owner : owners_) any |= owner >= 0;
+    if (!any) OwnOnePixel();
+    const std::vector<int> roots =
+        RootPixels(owners_, chart_.width, chart_.height, ring_px_);
+    const int columns = (chart_.width + kTilePx - 1) / kTilePx;
+    const int rows = (chart_.height + kTilePx - 1) / kTilePx;
+    std::vector<std::vector<uint32_t>> owned(columns * rows), ring(owned);
+    for (size_t i = 0; i < roots.size(); ++i) {
+      if (roots[i] < 0) continue;
+      const int tile = roots[i] / chart_.width / kTilePx * columns +
+                       roots[i] % chart_.width / kTilePx;
+      const auto pixel = static_cast<uint32_t>(i);
+      (roots[i] == static_cast<int>(i) ? owned : ring)[tile].push_back(pixel);
+    }
+    std::vector<uint32_t> index(roots.size(), 0);
+    for (size_t t = 0; t < owned.size(); ++t) {
+      if (owned[t].empty()) continue;
+      BakeTile tile;
+      tile.chart = chart_id_;
+      tile.begin = static_cast<uint32_t>(texels_.size());
+      for (uint32_t pixel : owned[t]) {
+        index[pixel] = static_cast<uint32_t>(texels_.size());
+        AddOwned(pixel);
+      }
+      tile.owned_end = static_cast<uint32_t>(texels_.size());
+      for (uint32_t pixel : ring[t]) AddRing(pixel, index[roots[pixel]]);
+      tile.end = static_cast<uint32_t>(texels_.size());
+      texels_.tiles.push_back(tile);
+    }
+    return std::move(texels_);
+  }
+
+ private:
+  void OwnOnePixel() {
+    const int face = LargestFace(mesh_, chart_);
+    const UvTriangle uv = atlas_.ChartUv(face);
+    const Vector2d middle = (uv[0] + uv[1] + uv[2]) / 3;
+    const int col =
+        std::clamp(static_cast<int>(middle.x()), 0, chart_.width - 1);
+    const int row =
+        std::clamp(static_cast<int>(middle.y()), 0, chart_.height - 1);
+    owners_[static_cast<size_t>(row) * chart_.width + col] = face;
+  }
+
+  void AddOwned(uint32_t pixel) {
+    const int face = owners_[pixel];
+    const Vector2d center(pixel % chart_.width + 0.5,
+                          pixel / chart_.width + 0.5);
+    const Vector3d p =
+        PointOnFace(mesh_, face, UvBarycentrics(atlas_.ChartUv(face), center));
+    const Vector3d q = chart_.steep ? p : plane_.Project(p);
+    texels_.p.push_back(p.cast<float>());
+    texels_.q.push_back(q.cast<float>());
+    texels_.pixel.push_back(pixel);
+    texels_.source.push_back(static_cast<uint32_t>(texels_.source.size()));
+    texels_.face.push_back(face);
+  }
+
+  void AddRing(uint32_t pixel, uint32_t source) {
+    const int width = chart_.width;
+    const int from = static_cast<int>(texels_.pixel[source]);
+    const int to = static_cast<int>(pixel);
+    const Vector3d offset =
+        atlas_.spacing_m * ((to % width - from % width) * chart_.e1 +
+                            (to / width - from / width) * chart_.e2);
+    texels_.p.push_back(texels_.p[source] + offset.cast<float>());
+    texels_.q.push_back(texels_.q[source] + offset.cast<float>());
+    texels_.pixel.push_back(pixel);
+    texels_.source.push_back(source);
+    texels_.face.push_back(texels_.face[source]);
+  }
+
+  const TriMesh& mesh_;
+  const Plane plane_;
+  const Atlas& atlas_;
+  const Chart& chart_;
+  const int chart_id_;
+  const int ring_px_;
+  std::vector<int> owners_;
+  BakeTexels texels_;
+};
+
+template <typename T>
+void Append(const std::vector<T>& from, std::vector<T>* to) {
+  to->insert(to->end(), from.begin(), from.end());
+}
+
+}  // namespace
+
+BakeTexels MakeBakeTexels(const TriMesh& mesh,
+                          const std::vector<Plane>& planes,
+                          const Atlas& atlas,
+                          int ring_px) {
+  const size_t num_charts = atlas.charts.size();
+  std::vector<BakeTexels> of_chart(num_charts);
+  ParallelFor(0, num_charts, [&](size_t c) {
+    of_chart[c] =
+        ChartTexelizer(mesh, planes, atlas, static_cast<int>(c), ring_px).Run();
+  });
+  BakeTexels all;
+  size_t total = 0;
+  for (const BakeTexels& part : of_chart) total += part.size();
+  all.p.reserve(total);
+  all.q.reserve(total);
+  all.pixel.reserve(total);
+  all.source.reserve(total);
+  all.face.reserve(total);
+  for (BakeTexels& part : of_chart) {
+    const auto base = static_cast<uint32_t>(all.size());
+    all.chart_tiles.push_back(static_cast<uint32_t>(all.tiles.size()));
+    for (BakeTile tile : part.tiles) {
+      tile.begin += base;
+      tile.owned_end += base;
+      tile.end += base;
+      all.tiles.push_back(tile);
+    }
+    for (uint32_t& source : part.source) source += base;
+    Append(part.p, &all.p);
+    Append(part.q, &all.q);
+    Append(part.pixel, &all.pixel);
+    Append(part.source, &all.source);
+    Append(part.face, &all.face);
+    part = BakeTexels();
+  }
+  all.chart_tiles.push_back(static_cast<uint32_t>(all.tiles.size()));
+  return all;
+}
+
+}  // namespace facet
