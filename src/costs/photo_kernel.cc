@@ -4,6 +4,9 @@
 
 #include <cstdlib>
 #include <cstring>
+#include <string>
+
+#include "util/warnings.h"
 
 namespace facet {
 
@@ -19,23 +22,33 @@ extern const PhotoKernel kKernel;
 }
 #endif
 
+const PhotoKernel* FindPhotoKernel(const char* name) {
+#if defined(__x86_64__)
+  const bool avx2 =
+      __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  if (std::strcmp(name, "avx512") == 0 && avx2 &&
+      __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+      __builtin_cpu_supports("avx512vl")) {
+    return &kernel_avx512::kKernel;
+  }
+  if (std::strcmp(name, "avx2") == 0 && avx2) return &kernel_avx2::kKernel;
+#endif
+  return std::strcmp(name, "baseline") == 0 ? &kernel_baseline::kKernel
+                                            : nullptr;
+}
+
 namespace {
 
 const PhotoKernel& Choose() {
-#if defined(__x86_64__)
-  const char* wish = std::getenv("FACET_KERNEL");
-  const auto wants = [&](const char* name) {
-    return wish == nullptr || std::strcmp(wish, name) == 0;
-  };
-  if (wants("avx512") && __builtin_cpu_supports("avx512f") &&
-      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl")) {
-    return kernel_avx512::kKernel;
+  if (const char* wish = std::getenv("FACET_KERNEL")) {
+    if (const PhotoKernel* kernel = FindPhotoKernel(wish)) return *kernel;
+    AddWarning("FACET_KERNEL=" + std::string(wish) +
+               " is not available on this processor; use baseline, avx2 or "
+               "avx512. The fastest kernel is taken");
   }
-  if (wants("avx2") && __builtin_cpu_supports("avx2") &&
-      __builtin_cpu_supports("fma")) {
-    return kernel_avx2::kKernel;
+  for (const char* name : {"avx512", "avx2"}) {
+    if (const PhotoKernel* kernel = FindPhotoKernel(name)) return *kernel;
   }
-#endif
   return kernel_baseline::kKernel;
 }
 

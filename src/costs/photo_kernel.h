@@ -66,6 +66,21 @@ struct PhotoKernel {
                  float* intensity,
                  PhotoCounts* counts);
 
+  // As `sample`, for plane points of one plane with in-plane axes e1, e2; also
+  // the derivative of the intensity when the surface point moves along them:
+  // g1 = grad_q I . e1, g2 = grad_q I . e2 [1/m]. The derivative along the
+  // viewing ray is 0, which gives the third component.
+  void (*sample_gradient)(const PhotoFrame& frame,
+                          const float e1[3],
+                          const float e2[3],
+                          const PhotoTexel* texels,
+                          const uint32_t* ids,
+                          size_t n,
+                          float* intensity,
+                          float* g1,
+                          float* g2,
+                          PhotoCounts* counts);
+
   // Sum r^2 over texels given as plane points q that lie in the warp cell whose
   // upper left vertex is in lattice column a and row b; frame.warp has just the
   // cell's four vertices f00, f10, f01, f11 (or is null: no warp), and the
@@ -96,7 +111,12 @@ struct PhotoKernel {
 };
 
 // The fastest kernel this processor runs. The environment variable
-// FACET_KERNEL=baseline|avx2|avx512 asks for a particular one.
+// FACET_KERNEL=baseline|avx2|avx512 asks for a particular one; a name that is
+// unknown or not supported here gives a warning and the fastest.
 const PhotoKernel& GetPhotoKernel();
+
+// The kernel "baseline", "avx2" or "avx512"; null if there is no such kernel or
+// this processor cannot run it.
+const PhotoKernel* FindPhotoKernel(const char* name);
 
 }  // namespace facet

@@ -253,6 +253,40 @@ void Sample(const PhotoFrame& frame,
   counts->used += n;
 }
 
+void SampleGradient(const PhotoFrame& frame,
+                    const float e1[3],
+                    const float e2[3],
+                    const PhotoTexel* texels,
+                    const uint32_t* ids,
+                    size_t n,
+                    float* intensity,
+                    float* g1,
+                    float* g2,
+                    PhotoCounts* counts) {
+  const float* r = frame.r;
+  float a1[3], a2[3];  // R e1, R e2
+  for (int k = 0; k < 3; ++k) {
+    a1[k] = r[3 * k] * e1[0] + r[3 * k + 1] * e1[1] + r[3 * k + 2] * e1[2];
+    a2[k] = r[3 * k] * e2[0] + r[3 * k + 1] * e2[1] + r[3 * k + 2] * e2[2];
+  }
+  Chunk c;
+  Lane ha, hb, hc;
+  for (size_t begin = 0; begin < n; begin += kLanes) {
+    const int m = ChunkSize(n - begin);
+    Load(texels, ids + begin, m, &c);
+    Project(frame, &c, counts);
+    if (frame.warp) WarpAnywhere(frame, &c);
+    SampleImage(frame, &c, counts);
+    PointGradient(frame, frame.warp != nullptr, c, &ha, &hb, &hc);
+    for (int i = 0; i < m; ++i) {
+      intensity[begin + i] = c.value.v[i];
+      g1[begin + i] = ha.v[i] * a1[0] + hb.v[i] * a1[1] + hc.v[i] * a1[2];
+      g2[begin + i] = ha.v[i] * a2[0] + hb.v[i] * a2[1] + hc.v[i] * a2[2];
+    }
+  }
+  counts->used += n;
+}
+
 double FrameCell(const PhotoFrame& frame,
                  float a,
                  float b,
@@ -352,8 +386,8 @@ double PlaneSegment(const PhotoFrame& frame,
 }
 
 extern const PhotoKernel kKernel;
-const PhotoKernel kKernel = {FACET_KERNEL_NAME, Sample, FrameCell,
-                             PlaneSegment};
+const PhotoKernel kKernel = {FACET_KERNEL_NAME, Sample, SampleGradient,
+                             FrameCell, PlaneSegment};
 
 }  // namespace FACET_KERNEL_NAMESPACE
 }  // namespace facet

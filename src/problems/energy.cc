@@ -7,6 +7,7 @@
 
 #include "costs/plane_manifold.h"
 #include "costs/se3_manifold.h"
+#include "problems/tile_samples.h"
 #include "util/parallel_for.h"
 
 namespace facet {
@@ -27,49 +28,20 @@ TileSums SumResiduals(const TextureProblem& problem,
   const std::vector<PhotoFrame> frames =
       MakePhotoFrames(problem, state, raw, &warps);
   const std::vector<PhotoTexel> points = PlanePoints(problem, state);
-  const PhotoKernel& kernel = GetPhotoKernel();
   std::vector<TileSums> sums(problem.tiles.size());
   ParallelFor(0, problem.tiles.size(), [&](size_t t) {
     const TexelTile& tile = problem.tiles[t];
-    if (tile.segment_begin == tile.segment_end) return;
-    std::vector<float> intensity;
-    std::vector<size_t> offset;
-    for (size_t s = tile.segment_begin; s < tile.segment_end; ++s) {
-      const TileSegment& segment = problem.segments[s];
-      offset.push_back(intensity.size());
-      intensity.resize(intensity.size() + segment.end - segment.begin);
-      kernel.sample(frames[segment.keyframe], points.data(),
-                    problem.observations.texel.data() + segment.begin,
-                    segment.end - segment.begin,
-                    intensity.data() + offset.back(), &sums[t].counts);
-    }
-    std::vector<float> color(state.colors.begin() + tile.texel_begin,
-                             state.colors.begin() + tile.texel_end);
-    const auto for_each = [&](const auto& visit) {
-      for (size_t s = tile.segment_begin; s < tile.segment_end; ++s) {
-        const TileSegment& segment = problem.segments[s];
-        const float* values =
-            intensity.data() + offset[s - tile.segment_begin];
-        for (size_t i = segment.begin; i < segment.end; ++i) {
-          visit(problem.observations.texel[i] - tile.texel_begin,
-                values[i - segment.begin]);
-        }
-      }
-    };
-    if (against_means) {
-      std::fill(color.begin(), color.end(), 0.0f);
-      for_each([&](size_t texel, float value) { color[texel] += value; });
-      for (size_t i = 0; i < color.size(); ++i) {
-        const uint16_t views = problem.views[tile.texel_begin + i];
-        if (views > 0) color[i] /= static_cast<float>(views);
-      }
-    }
+    TileSamples samples;
+    SampleTile(problem, frames, points, tile, nullptr, nullptr, &samples);
+    const float* colors = against_means
+                              ? samples.mean.data()
+                              : state.colors.data() + tile.texel_begin;
     double squares = 0;
-    for_each([&](size_t texel, float value) {
-      const double r = static_cast<double>(value) - color[texel];
+    ForEachSample(problem, tile, samples, [&](size_t, size_t texel, size_t i) {
+      const double r = static_cast<double>(samples.intensity[i]) - colors[texel];
       squares += r * r;
     });
-    sums[t].squares = squares;
+    sums[t] = {squares, samples.counts};
   });
   TileSums total;
   for (const TileSums& s : sums) {

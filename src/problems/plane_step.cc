@@ -126,7 +126,7 @@ void SolvePlanes(const TextureProblem& problem,
           solved.iterations.back().trust_region_radius, 1e-2, 1e8);
     }
     LimitPlaneStep(config, before, plane);
-    if (PlaneCost({photometric, moment}, plane) > cost_before) {
+    if (!(PlaneCost({photometric, moment}, plane) <= cost_before)) {
       Eigen::Map<Eigen::Vector4d>(plane, 4) = before;
       reverted[j] = 1;
     }

@@ -96,6 +96,7 @@ class FrameProblem {
     with_warp_ = (blocks & kWarps) != 0 || frame.warp != nullptr;
     bins_ = BinByCell(problem, points, state->CamFromWorld(keyframe), keyframe,
                       !with_warp_);
+    ceres_.AddParameterBlock(pose_, kPoseSize, new LeftSe3Manifold);
     AddCells(frame, points, weights);
     if (with_warp_) AddWarpTerm(weights);
     if (weights.pose_prior) {
@@ -104,7 +105,6 @@ class FrameProblem {
                                 weights.prior),
           nullptr, pose_);
     }
-    ceres_.SetManifold(pose_, new LeftSe3Manifold);
     if (!(blocks & kPoses)) ceres_.SetParameterBlockConstant(pose_);
   }
 

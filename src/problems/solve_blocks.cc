@@ -3,6 +3,7 @@
 #include "problems/solve_blocks.h"
 
 #include "problems/color_step.h"
+#include "problems/joint_step.h"
 #include "problems/plane_step.h"
 #include "problems/pose_warp_step.h"
 #include "util/errors.h"
@@ -42,9 +43,13 @@ PhaseSummary SolveBlocks(const TextureProblem& problem,
     SolvePlanes(problem, weights, config, memory, state, &summary);
   } else if (free != 0 && (free & ~unsigned{kPoses | kWarps}) == 0) {
     SolvePosesAndWarps(problem, weights, free, config, memory, state, &summary);
+  } else if (free == (kColors | kPoses) ||
+             free == (kColors | kPlanes | kPoses)) {
+    SolveJoint(problem, weights, free, config, memory, state, &summary);
   } else {
     throw OptionsError("the blocks " + summary.blocks +
-                       " cannot be solved together; use C, Phi, T, F or T+F");
+                       " cannot be solved together; use C, Phi, T, F, T+F, "
+                       "C+T or C+Phi+T");
   }
   summary.after =
       EvaluateEnergy(problem, weights, *state, config.trace_rms_grey);

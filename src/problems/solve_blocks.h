@@ -6,6 +6,7 @@
 //   {C}       closed-form means (problems/color_step.h)
 //   {Phi}     one small Ceres problem a plane, on all threads
 //   {T}, {F}, {T, F}   one Ceres problem a keyframe, on all threads
+//   {C, T}, {C, Phi, T}   one joint Ceres problem (problems/joint_step.h)
 //
 // A phase that raises the objective E_tex + E_prior is rolled back and marked.
 #pragma once
@@ -38,6 +39,11 @@ struct SolverConfig {
   int max_plane_iterations = 3;
   int max_pose_iterations = 5;
   PlaneStep plane_step = PlaneStep::kAnchored;
+  // Joint solve: kappa of problems/joint_pass.h and the largest trust-region
+  // radius, which together with the pose prior holds soft gauge directions.
+  int max_joint_iterations = 5;
+  double joint_common_share = 0.99;
+  double max_joint_radius = 1e5;
   // Limits of one solve (method, Sec. 7.5): a longer step is scaled down.
   double max_rotation_rad = 2.0 * 3.14159265358979 / 180;
   double max_translation_m = 0.03;
@@ -54,6 +60,7 @@ struct SolverConfig {
 // first use.
 struct SolverMemory {
   std::vector<double> plane_radius, frame_radius;
+  double joint_radius = 1e4;
 };
 
 struct PhaseSummary {

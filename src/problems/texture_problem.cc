@@ -5,6 +5,9 @@
 #include <glog/logging.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
 
 #include "costs/frame_cell_cost.h"
 #include "costs/plane_manifold.h"
@@ -15,24 +18,41 @@
 namespace facet {
 namespace {
 
-void BuildTiles(TextureProblem* problem) {
-  const std::vector<int>& plane = problem->texels.plane;
-  problem->plane_tile_begin.assign(problem->NumPlanes() + 1, 0);
-  size_t begin = 0;
-  for (int j = 0; j < problem->NumPlanes(); ++j) {
-    problem->plane_tile_begin[j] = problem->tiles.size();
-    while (begin < plane.size() && plane[begin] == j) {
-      size_t end = begin;
-      while (end < plane.size() && plane[end] == j &&
-             end - begin < kTileTexels) {
-        ++end;
-      }
-      problem->tiles.push_back({j, begin, end, 0, 0});
-      begin = end;
+// Cuts the texels, sorted by plane, where `same_tile(a, b)` is false.
+template <typename SameTile>
+std::vector<TexelTile> CutTiles(const TexelSet& texels,
+                                const SameTile& same_tile) {
+  std::vector<TexelTile> tiles;
+  for (size_t begin = 0; begin < texels.size();) {
+    size_t end = begin + 1;
+    while (end < texels.size() && texels.plane[end] == texels.plane[begin] &&
+           end - begin < kTileTexels && same_tile(begin, end)) {
+      ++end;
     }
+    tiles.push_back({texels.plane[begin], begin, end, 0, 0});
+    begin = end;
   }
-  problem->plane_tile_begin.back() = problem->tiles.size();
-  CHECK_EQ(begin, plane.size()) << "texels must be sorted by plane";
+  return tiles;
+}
+
+void IndexTiles(TextureProblem* problem) {
+  problem->plane_tile_begin.assign(problem->NumPlanes() + 1, 0);
+  int previous = 0;
+  for (const TexelTile& tile : problem->tiles) {
+    CHECK_LE(previous, tile.plane) << "texels must be sorted by plane";
+    previous = tile.plane;
+    ++problem->plane_tile_begin[tile.plane + 1];
+  }
+  for (int j = 0; j < problem->NumPlanes(); ++j) {
+    problem->plane_tile_begin[j + 1] += problem->plane_tile_begin[j];
+  }
+}
+
+template <typename T>
+void Permute(const std::vector<uint32_t>& order, std::vector<T>* values) {
+  std::vector<T> sorted(values->size());
+  for (size_t i = 0; i < order.size(); ++i) sorted[i] = (*values)[order[i]];
+  values->swap(sorted);
 }
 
 // Cuts each keyframe's ascending texel list at the tile borders.
@@ -113,6 +133,39 @@ Plane ReconState::PlaneAt(int plane, const Eigen::Vector3d& anchor) const {
   return result;
 }
 
+std::vector<TexelTile> SortTexelsIntoTiles(
+    const std::vector<Plane>& planes,
+    const std::vector<Eigen::Vector3d>& anchors,
+    int size,
+    TexelSet* texels) {
+  const double tile_m = size * texels->stride * texels->spacing_m;
+  std::vector<std::array<int, 2>> cell(texels->size());
+  ParallelForChunks(0, cell.size(), kTileTexels, [&](size_t a, size_t b) {
+    for (size_t i = a; i < b; ++i) {
+      const int j = texels->plane[i];
+      const Eigen::Vector3d e1 = planes[j].normal.unitOrthogonal();
+      const Eigen::Vector3d e2 = planes[j].normal.cross(e1);
+      const Eigen::Vector3d p =
+          texels->position[i].cast<double>() - anchors[j];
+      cell[i] = {static_cast<int>(std::floor(e1.dot(p) / tile_m)),
+                 static_cast<int>(std::floor(e2.dot(p) / tile_m))};
+    }
+  });
+  std::vector<uint32_t> order(texels->size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+    return std::make_tuple(texels->plane[a], cell[a], a) <
+           std::make_tuple(texels->plane[b], cell[b], b);
+  });
+  Permute(order, &texels->position);
+  Permute(order, &texels->plane);
+  Permute(order, &texels->face);
+  Permute(order, &texels->bary);
+  Permute(order, &cell);
+  return CutTiles(*texels,
+                  [&](size_t a, size_t b) { return cell[a] == cell[b]; });
+}
+
 void FinishTextureProblem(TextureProblem* problem) {
   CHECK_EQ(problem->observations.begin.size(), problem->images.size() + 1);
   if (!problem->texels.position.empty()) {
@@ -120,7 +173,11 @@ void FinishTextureProblem(TextureProblem* problem) {
     for (const auto& p : problem->texels.position) sum += p.cast<double>();
     problem->origin = sum / static_cast<double>(problem->texels.size());
   }
-  BuildTiles(problem);
+  if (problem->tiles.empty()) {
+    problem->tiles =
+        CutTiles(problem->texels, [](size_t, size_t) { return true; });
+  }
+  IndexTiles(problem);
   BuildSegments(problem);
   CountViews(problem);
   BuildMoments(problem);

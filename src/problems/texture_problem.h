@@ -35,7 +35,8 @@ struct ReconState {
 };
 
 // Consecutive texels of one plane, at most kTileTexels: the unit of parallel
-// work whose partial sums are added in order.
+// work whose partial sums are added in order, and the patch on which the joint
+// solve takes viewing directions as constant (problems/joint_pass.h).
 struct TexelTile {
   int plane = 0;
   size_t texel_begin = 0, texel_end = 0;
@@ -72,8 +73,18 @@ struct TextureProblem {
   int NumPlanes() const { return static_cast<int>(anchors.size()); }
 };
 
-// Builds the derived tables (tiles, segments, moments, views) from cameras,
-// images, texels, observations and anchors, which must be set.
+// Reorders texels within their planes so that squares of `size` x `size` texels
+// are consecutive, and returns these tiles (without segments). Call before the
+// observations are computed.
+std::vector<TexelTile> SortTexelsIntoTiles(
+    const std::vector<Plane>& planes,
+    const std::vector<Eigen::Vector3d>& anchors,
+    int size,
+    TexelSet* texels);
+
+// Builds the derived tables (segments, moments, views) from cameras, images,
+// texels, observations and anchors, which must be set. Without tiles, runs of
+// kTileTexels texels are taken.
 void FinishTextureProblem(TextureProblem* problem);
 
 // The state at the start: given poses and planes, no warp, mean colours.

@@ -1,0 +1,240 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+#include "pipeline/artefacts.h"
+
+#include <filesystem>
+
+#include "costs/se3_manifold.h"
+#include "util/archive.h"
+#include "util/errors.h"
+
+namespace facet {
+namespace {
+
+using nlohmann::json;
+
+// Settings of all stages up to `stage`.
+json SettingsUpTo(const ReconstructOptions& options, Stage stage) {
+  json settings = json::object();
+  for (int s = 0; s <= static_cast<int>(stage); ++s) {
+    settings[StageName(static_cast<Stage>(s))] =
+        StageSettings(options, static_cast<Stage>(s));
+  }
+  return settings;
+}
+
+void CheckSettings(const std::string& path, const json& was, const json& now) {
+  if (was == now) return;
+  for (const auto& [stage, settings] : now.items()) {
+    for (const auto& [key, value] : settings.items()) {
+      const json old = was.contains(stage) && was[stage].contains(key)
+                           ? was[stage][key]
+                           : json();
+      if (old == value) continue;
+      throw OptionsError(path + " was made with " + stage + "." + key + " = " +
+                         old.dump() + ", now it is " + value.dump() +
+                         ": start again with --from_stage=" + stage +
+                         " or give the old value");
+    }
+  }
+  throw OptionsError(path +
+                     " was made by another version of facet: start again with "
+                     "--from_stage=partition");
+}
+
+ArchiveReader Open(const ReconstructOptions& options, Stage stage) {
+  const std::string path = ArtefactPath(options, stage);
+  if (!std::filesystem::exists(path)) {
+    throw InputError(path + " does not exist: run with --from_stage=" +
+                     StageName(stage) + " or an earlier stage first");
+  }
+  ArchiveReader reader(path);
+  CheckSettings(path, reader.meta().value("settings", json::object()),
+                SettingsUpTo(options, stage));
+  return reader;
+}
+
+void Write(const ReconstructOptions& options,
+           Stage stage,
+           const json& report,
+           ArchiveWriter* writer) {
+  writer->meta["settings"] = SettingsUpTo(options, stage);
+  writer->meta["report"] = report;
+  writer->Write(ArtefactPath(options, stage));
+}
+
+// Eigen's classes have constructors; archives want plain numbers.
+std::vector<double> Flatten(const std::vector<Eigen::Vector3d>& points) {
+  std::vector<double> flat;
+  flat.reserve(3 * points.size());
+  for (const Eigen::Vector3d& p : points) {
+    flat.insert(flat.end(), {p.x(), p.y(), p.z()});
+  }
+  return flat;
+}
+
+std::vector<Eigen::Vector3d> Unflatten(const std::vector<double>& flat) {
+  std::vector<Eigen::Vector3d> points(flat.size() / 3);
+  for (size_t i = 0; i < points.size(); ++i) {
+    points[i] = Eigen::Vector3d(flat[3 * i], flat[3 * i + 1], flat[3 * i + 2]);
+  }
+  return points;
+}
+
+std::vector<double> Flatten(const std::vector<Plane>& planes) {
+  std::vector<double> flat;
+  for (const Plane& p : planes) {
+    flat.insert(flat.end(),
+                {p.normal.x(), p.normal.y(), p.normal.z(), p.offset});
+  }
+  return flat;
+}
+
+std::vector<Plane> PlanesFrom(const std::vector<double>& flat) {
+  std::vector<Plane> planes(flat.size() / 4);
+  for (size_t i = 0; i < planes.size(); ++i) {
+    planes[i].normal =
+        Eigen::Vector3d(flat[4 * i], flat[4 * i + 1], flat[4 * i + 2]);
+    planes[i].offset = flat[4 * i + 3];
+  }
+  return planes;
+}
+
+void AddMesh(const TriMesh& mesh, ArchiveWriter* writer) {
+  writer->Add("vertices", Flatten(mesh.vertices));
+  writer->Add("faces", mesh.faces);
+  writer->Add("vertex_colors", mesh.vertex_colors);
+}
+
+TriMesh GetMesh(const ArchiveReader& reader) {
+  TriMesh mesh;
+  mesh.vertices = Unflatten(reader.Get<double>("vertices"));
+  mesh.faces = reader.Get<std::array<int, 3>>("faces");
+  mesh.vertex_colors = reader.Get<Rgb>("vertex_colors");
+  return mesh;
+}
+
+constexpr size_t kClusterNumbers = 10;
+
+std::vector<double> FlattenClusters(const std::vector<PlaneCluster>& clusters) {
+  std::vector<double> flat;
+  for (const PlaneCluster& c : clusters) {
+    flat.insert(flat.end(),
+                {c.plane.normal.x(), c.plane.normal.y(), c.plane.normal.z(),
+                 c.plane.offset, c.centroid.x(), c.centroid.y(), c.centroid.z(),
+                 c.area, c.rms, static_cast<double>(c.num_faces)});
+  }
+  return flat;
+}
+
+std::vector<PlaneCluster> ClustersFrom(const std::vector<double>& flat) {
+  std::vector<PlaneCluster> clusters(flat.size() / kClusterNumbers);
+  for (size_t i = 0; i < clusters.size(); ++i) {
+    const double* x = flat.data() + kClusterNumbers * i;
+    PlaneCluster& c = clusters[i];
+    c.plane.normal = Eigen::Vector3d(x[0], x[1], x[2]);
+    c.plane.offset = x[3];
+    c.centroid = Eigen::Vector3d(x[4], x[5], x[6]);
+    c.area = x[7];
+    c.rms = x[8];
+    c.num_faces = static_cast<int>(x[9]);
+  }
+  return clusters;
+}
+
+}  // namespace
+
+std::string ArtefactPath(const ReconstructOptions& options, Stage stage) {
+  return options.output_path + "/stages/" + StageName(stage) + ".bin";
+}
+
+void Save(const ReconstructOptions& options,
+          Stage stage,
+          const MeshArtefact& artefact) {
+  ArchiveWriter writer;
+  AddMesh(artefact.mesh, &writer);
+  writer.Add("face_cluster", artefact.partition.face_cluster);
+  writer.Add("clusters", FlattenClusters(artefact.partition.clusters));
+  writer.Add("refitted_planes", Flatten(artefact.refitted_planes));
+  Write(options, stage, artefact.report, &writer);
+}
+
+MeshArtefact LoadMeshArtefact(const ReconstructOptions& options, Stage stage) {
+  const ArchiveReader reader = Open(options, stage);
+  MeshArtefact artefact;
+  artefact.mesh = GetMesh(reader);
+  artefact.partition.face_cluster = reader.Get<int>("face_cluster");
+  artefact.partition.clusters = ClustersFrom(reader.Get<double>("clusters"));
+  artefact.refitted_planes = PlanesFrom(reader.Get<double>("refitted_planes"));
+  artefact.report = reader.meta()["report"];
+  return artefact;
+}
+
+void Save(const ReconstructOptions& options, const KeyframeArtefact& artefact) {
+  ArchiveWriter writer;
+  writer.Add("keyframes", artefact.keyframes);
+  writer.Add("blur", artefact.blur);
+  Write(options, Stage::kKeyframes, artefact.report, &writer);
+}
+
+KeyframeArtefact LoadKeyframeArtefact(const ReconstructOptions& options) {
+  const ArchiveReader reader = Open(options, Stage::kKeyframes);
+  KeyframeArtefact artefact;
+  artefact.keyframes = reader.Get<int>("keyframes");
+  artefact.blur = reader.Get<double>("blur");
+  artefact.report = reader.meta()["report"];
+  return artefact;
+}
+
+void Save(const ReconstructOptions& options,
+          const PhotometricArtefact& artefact) {
+  ArchiveWriter writer;
+  std::vector<double> poses(kPoseSize * artefact.cam_from_world.size());
+  for (size_t k = 0; k < artefact.cam_from_world.size(); ++k) {
+    PoseToBlock(artefact.cam_from_world[k], poses.data() + kPoseSize * k);
+  }
+  writer.Add("poses", poses);
+  writer.Add("planes", Flatten(artefact.planes));
+  writer.Add("warps", artefact.warps);
+  const WarpLattice& l = artefact.lattice;
+  writer.Add("lattice",
+             std::vector<int>{l.columns, l.rows, l.width, l.height});
+  writer.Add("plane_texels", artefact.plane_texels);
+  writer.Add("plane_frames", artefact.plane_frames);
+  Write(options, Stage::kPhotometric, artefact.report, &writer);
+}
+
+PhotometricArtefact LoadPhotometricArtefact(const ReconstructOptions& options) {
+  const ArchiveReader reader = Open(options, Stage::kPhotometric);
+  PhotometricArtefact artefact;
+  const std::vector<double> poses = reader.Get<double>("poses");
+  for (size_t k = 0; k < poses.size() / kPoseSize; ++k) {
+    artefact.cam_from_world.push_back(
+        PoseFromBlock(poses.data() + kPoseSize * k));
+  }
+  artefact.planes = PlanesFrom(reader.Get<double>("planes"));
+  artefact.warps = reader.Get<double>("warps");
+  const std::vector<int> lattice = reader.Get<int>("lattice");
+  artefact.lattice = {lattice.at(0), lattice.at(1), lattice.at(2),
+                      lattice.at(3)};
+  artefact.plane_texels = reader.Get<size_t>("plane_texels");
+  artefact.plane_frames = reader.Get<size_t>("plane_frames");
+  artefact.report = reader.meta()["report"];
+  return artefact;
+}
+
+void Save(const ReconstructOptions& options, const GeometryArtefact& artefact) {
+  ArchiveWriter writer;
+  AddMesh(artefact.mesh, &writer);
+  Write(options, Stage::kGeometry, artefact.report, &writer);
+}
+
+GeometryArtefact LoadGeometryArtefact(const ReconstructOptions& options) {
+  const ArchiveReader reader = Open(options, Stage::kGeometry);
+  GeometryArtefact artefact;
+  artefact.mesh = GetMesh(reader);
+  artefact.report = reader.meta()["report"];
+  return artefact;
+}
+
+}  // namespace facet

@@ -1,0 +1,63 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+//
+// Results of the stages and how they are kept in RUN/stages/<stage>.bin. Each
+// file carries the settings of its stage and of all before; going on from it
+// with other settings is refused (OptionsError naming the setting).
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "mesh/planar_partition.h"
+#include "mesh/tri_mesh.h"
+#include "pipeline/config.h"
+
+namespace facet {
+
+// partition: the cleaned dense mesh. simplify: the light mesh.
+struct MeshArtefact {
+  TriMesh mesh;
+  PlanarPartition partition;
+  std::vector<Plane> refitted_planes;  // simplify: fitted to the light mesh
+  nlohmann::json report;               // the stage's part of report.json
+};
+
+struct KeyframeArtefact {
+  std::vector<int> keyframes;  // indices into the sequence's frames
+  std::vector<double> blur;    // by frame index, NaN = not measured
+  nlohmann::json report;
+};
+
+// Poses, planes and warps after the schedule.
+struct PhotometricArtefact {
+  std::vector<Pose> cam_from_world;  // colour camera, a keyframe
+  std::vector<Plane> planes;
+  std::vector<double> warps;  // empty = none
+  WarpLattice lattice;
+  std::vector<size_t> plane_texels, plane_frames;
+  nlohmann::json report;
+};
+
+// The final mesh after the fit; geometry keeps labels and texture coordinates.
+struct GeometryArtefact {
+  TriMesh mesh;
+  nlohmann::json report;
+};
+
+std::string ArtefactPath(const ReconstructOptions& options, Stage stage);
+
+void Save(const ReconstructOptions&, Stage, const MeshArtefact&);
+void Save(const ReconstructOptions&, const KeyframeArtefact&);
+void Save(const ReconstructOptions&, const PhotometricArtefact&);
+void Save(const ReconstructOptions&, const GeometryArtefact&);
+
+// Throw InputError (missing: names the stage to run; damaged) and OptionsError
+// (made with other settings).
+MeshArtefact LoadMeshArtefact(const ReconstructOptions&, Stage);
+KeyframeArtefact LoadKeyframeArtefact(const ReconstructOptions&);
+PhotometricArtefact LoadPhotometricArtefact(const ReconstructOptions&);
+GeometryArtefact LoadGeometryArtefact(const ReconstructOptions&);
+
+}  // namespace facet

@@ -1,0 +1,69 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+//
+// The photometric stage: atlas, texels, visibility, then the schedule that
+// minimises E_tex (method ch. 4, 6, 7).
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mesh/planar_partition.h"
+#include "mesh/tri_mesh.h"
+#include "problems/texture_problem.h"
+#include "rgbd/sequence.h"
+#include "schedule/run_schedule.h"
+#include "texture/atlas.h"
+#include "texture/keyframe_images.h"
+#include "texture/observations.h"
+
+namespace facet {
+
+struct PhotometricOptions {
+  // Every stride-th texel in both directions takes part in the optimisation.
+  // 0 = the smallest stride that keeps the observations below
+  // max_observations. Paper: 1.
+  int stride = 0;
+  size_t max_observations = 20000000;
+  int tile_texels = 16;  // side of the square tiles (SortTexelsIntoTiles)
+  double smoothing_sigma_px = 0.8;  // Gaussian on the luma; paper: none
+  int warp_columns = 20, warp_rows = 16;  // control vertices (paper)
+  std::string schedule = "3x[C; Phi; T]; 20x[C; Phi; T+F]";
+  StopRule stop;
+  SolverConfig solver;
+  EnergyWeights weights;  // lambda1 and texel_weight are computed
+};
+
+struct PhotometricResult {
+  std::vector<Pose> cam_from_world;  // colour camera, a keyframe
+  std::vector<Plane> planes;
+  std::vector<double> warps;  // empty if all are zero
+  WarpLattice lattice;
+  EnergyTerms initial, final_terms;
+  double lambda1 = 0;
+  int stride = 0;
+  size_t texels = 0, texels_observed = 0;
+  VisibilityCounts visibility;
+  Trace trace;
+  std::vector<size_t> plane_texels, plane_frames;  // observed, by plane
+};
+
+// `planes` are the initial planes, one a cluster. `cam_from_world` are the
+// initial poses of the colour camera, one a keyframe. Prints the fixed-width
+// table of the phases through `print` (one line a call).
+PhotometricResult RunPhotometricStage(
+    const TriMesh& mesh,
+    const PlanarPartition& partition,
+    const std::vector<Plane>& planes,
+    const Atlas& atlas,
+    const RgbdSequence& sequence,
+    const std::vector<int>& keyframes,
+    const std::vector<Pose>& cam_from_world,
+    const KeyframeImages& images,
+    const VisibilityOptions& visibility,
+    const PhotometricOptions& options,
+    const std::function<void(const std::string&)>& print);
+
+}  // namespace facet

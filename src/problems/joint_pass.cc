@@ -1,0 +1,208 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+#include "problems/joint_pass.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "costs/plane_manifold.h"
+#include "problems/tile_samples.h"
+#include "util/parallel_for.h"
+
+namespace facet {
+namespace {
+
+// A keyframe's pose in double, world coordinates relative to the origin.
+struct FramePose {
+  Eigen::Matrix3d r;
+  Eigen::Vector3d t, center;
+};
+
+// In-plane axes e1, e2 with n: an orthonormal frame.
+struct PlaneFrame {
+  Eigen::Vector3d n, e1, e2;
+  explicit PlaneFrame(const double* plane)
+      : n(Eigen::Map<const Eigen::Vector3d>(plane).normalized()),
+        e1(n.unitOrthogonal()),
+        e2(n.cross(e1)) {}
+};
+
+struct SegmentGradient {
+  Vector6d pose = Vector6d::Zero();
+  Eigen::Vector4d plane = Eigen::Vector4d::Zero();
+};
+
+// B_i at the point q: the point seen along the ray moves on the plane by
+// E^T (I - d n^T / (n.d)) dq, d the viewing direction.
+TileView ViewAt(const Eigen::Vector3d& q,
+                const Eigen::Vector3d& q_from_anchor,
+                const PlaneFrame& frame,
+                const FramePose& pose) {
+  const Eigen::Vector3d y = pose.r * q + pose.t;
+  const Eigen::Vector3d d = (q - pose.center).normalized();
+  double cosine = frame.n.dot(d);
+  // A grazing view says nothing about the shift; keep the map bounded.
+  if (std::abs(cosine) < 0.1) cosine = cosine < 0 ? -0.1 : 0.1;
+  Eigen::Matrix<double, 2, 3> axes;
+  axes << frame.e1.transpose(), frame.e2.transpose();
+  const Eigen::Matrix<double, 2, 3> along_ray =
+      axes - axes * d * frame.n.transpose() / cosine;
+  Eigen::Matrix<double, 3, 6> dy;
+  dy << -Skew(y), Eigen::Matrix3d::Identity();
+  Eigen::Vector4d ds;
+  ds << q_from_anchor, 1.0;
+  TileView view;
+  view.pose_shift = (along_ray * pose.r.transpose() * dy).cast<float>();
+  // dq = -n ds; E^T n = 0.
+  view.plane_shift =
+      (axes * d / cosine * ds.transpose()).cast<float>();
+  return view;
+}
+
+// T from the mean gradients of the tile's texels.
+Eigen::Matrix2f ConsensusTensor(const TextureProblem& problem,
+                                const TexelTile& tile,
+                                const TileSamples& samples) {
+  std::vector<Eigen::Vector2d> mean(tile.texel_end - tile.texel_begin,
+                                    Eigen::Vector2d::Zero());
+  ForEachSample(problem, tile, samples, [&](size_t, size_t texel, size_t i) {
+    mean[texel] += Eigen::Vector2d(samples.g1[i], samples.g2[i]);
+  });
+  Eigen::Matrix2d tensor = Eigen::Matrix2d::Zero();
+  for (size_t i = 0; i < mean.size(); ++i) {
+    const double views = problem.views[tile.texel_begin + i];
+    if (views == 0) continue;
+    const Eigen::Vector2d g = mean[i] / views;
+    tensor += g * g.transpose();
+  }
+  return tensor.cast<float>();
+}
+
+// Exact gradient of one view of a tile, summed over its samples.
+SegmentGradient GradientOf(const TextureProblem& problem,
+                           const std::vector<PhotoTexel>& points,
+                           const TexelTile& tile,
+                           const TileSegment& segment,
+                           const TileSamples& samples,
+                           size_t offset,
+                           const PlaneFrame& frame,
+                           const FramePose& pose) {
+  const Eigen::Vector3d anchor = problem.anchors[tile.plane] - problem.origin;
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();   // sum r G
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();  // sum r q x G
+  SegmentGradient gradient;
+  for (size_t i = segment.begin; i < segment.end; ++i) {
+    const uint32_t id = problem.observations.texel[i];
+    const size_t k = offset + i - segment.begin;
+    const Eigen::Vector3d q(points[id].x, points[id].y, points[id].z);
+    const Eigen::Vector3d d = q - pose.center;
+    const double g1 = samples.g1[k], g2 = samples.g2[k];
+    const double gn =
+        -(g1 * d.dot(frame.e1) + g2 * d.dot(frame.e2)) / d.dot(frame.n);
+    const double r = static_cast<double>(samples.intensity[k]) -
+                     samples.mean[id - tile.texel_begin];
+    const Eigen::Vector3d rg =
+        r * (g1 * frame.e1 + g2 * frame.e2 + gn * frame.n);
+    force += rg;
+    moment += q.cross(rg);
+    const Eigen::Vector3d p =
+        problem.texels.position[id].cast<double>() - problem.origin;
+    const double s = frame.n.dot(p - q);
+    gradient.plane.head<3>() -= r * gn * (p - anchor) + s * rg;
+    gradient.plane[3] -= r * gn;
+  }
+  const Eigen::Vector3d force_in_cam = pose.r * force;
+  gradient.pose << pose.r * moment + pose.t.cross(force_in_cam), force_in_cam;
+  return gradient;
+}
+
+Eigen::Vector3d TileCenter(const TexelTile& tile,
+                           const std::vector<PhotoTexel>& points) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (size_t i = tile.texel_begin; i < tile.texel_end; ++i) {
+    sum += Eigen::Vector3d(points[i].x, points[i].y, points[i].z);
+  }
+  return sum / static_cast<double>(tile.texel_end - tile.texel_begin);
+}
+
+size_t TexelsSeen(const TextureProblem& problem, const TexelTile& tile) {
+  size_t seen = 0;
+  for (size_t i = tile.texel_begin; i < tile.texel_end; ++i) {
+    seen += problem.views[i] > 0 ? 1 : 0;
+  }
+  return seen;
+}
+
+}  // namespace
+
+JointPass RunJointPass(const TextureProblem& problem,
+                       const ReconState& state,
+                       bool with_derivatives) {
+  std::vector<float> warps;
+  const std::vector<PhotoFrame> frames =
+      MakePhotoFrames(problem, state, false, &warps);
+  const std::vector<PhotoTexel> points = PlanePoints(problem, state);
+  std::vector<FramePose> poses(frames.size());
+  for (size_t k = 0; k < frames.size(); ++k) {
+    const Pose pose = state.CamFromWorld(static_cast<int>(k));
+    poses[k].r = pose.RotationMatrix();
+    poses[k].t = pose * problem.origin;
+    poses[k].center = -poses[k].r.transpose() * poses[k].t;
+  }
+  const size_t num_tiles = problem.tiles.size();
+  JointPass pass;
+  std::vector<double> squares(num_tiles, 0.0);
+  std::vector<PhotoCounts> counts(num_tiles);
+  std::vector<SegmentGradient> gradients;
+  if (with_derivatives) {
+    pass.views.resize(problem.segments.size());
+    pass.tensors.resize(num_tiles);
+    gradients.resize(problem.segments.size());
+  }
+  ParallelFor(0, num_tiles, [&](size_t t) {
+    const TexelTile& tile = problem.tiles[t];
+    const PlaneFrame frame(state.planes.data() + kPlaneSize * tile.plane);
+    const Eigen::Vector3f e1 = frame.e1.cast<float>();
+    const Eigen::Vector3f e2 = frame.e2.cast<float>();
+    TileSamples samples;
+    SampleTile(problem, frames, points, tile,
+               with_derivatives ? e1.data() : nullptr, e2.data(), &samples);
+    counts[t] = samples.counts;
+    ForEachSample(problem, tile, samples, [&](size_t, size_t texel, size_t i) {
+      const double r =
+          static_cast<double>(samples.intensity[i]) - samples.mean[texel];
+      squares[t] += r * r;
+    });
+    if (!with_derivatives || tile.segment_begin == tile.segment_end) return;
+    pass.tensors[t] = ConsensusTensor(problem, tile, samples);
+    const Eigen::Vector3d center = TileCenter(tile, points);
+    const Eigen::Vector3d anchor = problem.anchors[tile.plane] - problem.origin;
+    const float seen = static_cast<float>(TexelsSeen(problem, tile));
+    for (size_t s = tile.segment_begin; s < tile.segment_end; ++s) {
+      const TileSegment& segment = problem.segments[s];
+      const FramePose& pose = poses[segment.keyframe];
+      pass.views[s] = ViewAt(center, center - anchor, frame, pose);
+      pass.views[s].share =
+          static_cast<float>(segment.end - segment.begin) / seen;
+      gradients[s] = GradientOf(problem, points, tile, segment, samples,
+                                samples.offset[s - tile.segment_begin], frame,
+                                pose);
+    }
+  });
+  for (size_t t = 0; t < num_tiles; ++t) {
+    pass.squares += squares[t];
+    pass.counts += counts[t];
+  }
+  if (!with_derivatives) return pass;
+  pass.pose_gradient.assign(frames.size(), Vector6d::Zero());
+  pass.plane_gradient.assign(problem.NumPlanes(), Eigen::Vector4d::Zero());
+  for (const TexelTile& tile : problem.tiles) {
+    for (size_t s = tile.segment_begin; s < tile.segment_end; ++s) {
+      pass.pose_gradient[problem.segments[s].keyframe] += gradients[s].pose;
+      pass.plane_gradient[tile.plane] += gradients[s].plane;
+    }
+  }
+  return pass;
+}
+
+}  // namespace facet

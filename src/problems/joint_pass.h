@@ -1,0 +1,52 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+//
+// One pass over all observations for the joint solve of poses, planes and
+// colours: cost and exact gradient with the colours re-averaged, and what the
+// Hessian needs.
+//
+// With C = mean (variable projection) the cost is sum (I_i - mean)^2 and its
+// gradient sum (I_i - mean) dI_i, exactly. The Gauss-Newton Hessian of a tile is
+// built from a consensus tensor: all views see the same texture, so the mean
+// texture gradient gbar(p) stands for every view's own, noisy one:
+//
+//   T = sum_p gbar gbar^T                                      2 x 2
+//   H = sum_i c_i B_i^T T B_i - kappa / sum(c) (sum c_i B_i)^T T (sum c_i B_i)
+//
+// where B_i maps increments of pose i and of the plane to the shift of the
+// texture under that view at the tile's centre [m], and c_i is the share of the
+// tile's texels that keyframe i sees. Motions common to all views cost nothing,
+// as in the true energy (kappa slightly below 1 keeps H definite). H is positive
+// semi-definite by construction.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "geometry/pose.h"
+#include "problems/texture_problem.h"
+
+namespace facet {
+
+// How a view of a tile shifts its texture; one for each TileSegment.
+struct TileView {
+  float share = 0;                             // c_i in (0, 1]
+  Eigen::Matrix<float, 2, 6> pose_shift;       // d shift / d xi_i (left)
+  Eigen::Matrix<float, 2, 4> plane_shift;      // d shift / d (n, d), ambient
+};
+
+struct JointPass {
+  double squares = 0;  // sum of (I - mean)^2
+  PhotoCounts counts;
+  // With derivatives: half the gradient of `squares`.
+  std::vector<Vector6d> pose_gradient;           // by keyframe, left tangent
+  std::vector<Eigen::Vector4d> plane_gradient;   // by plane, ambient (n, d)
+  std::vector<TileView> views;                   // by segment
+  std::vector<Eigen::Matrix2f> tensors;          // T by tile
+};
+
+JointPass RunJointPass(const TextureProblem& problem,
+                       const ReconState& state,
+                       bool with_derivatives);
+
+}  // namespace facet

@@ -1,0 +1,293 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+#include "problems/joint_step.h"
+
+#include <ceres/cost_function.h>
+#include <ceres/evaluation_callback.h>
+#include <ceres/problem.h>
+#include <ceres/sized_cost_function.h>
+#include <ceres/solver.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "costs/plane_manifold.h"
+#include "costs/plane_moment.h"
+#include "costs/se3_manifold.h"
+#include "problems/color_step.h"
+#include "problems/joint_pass.h"
+#include "problems/joint_system.h"
+
+namespace facet {
+namespace {
+
+using RowMajor =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+// Runs the pass whenever Ceres moves to a new point; the cost functions below
+// only read its results. The state is Ceres's parameter memory.
+class JointEvaluation : public ceres::EvaluationCallback {
+ public:
+  JointEvaluation(const TextureProblem& problem,
+                  const EnergyWeights& weights,
+                  bool with_planes,
+                  double common_share,
+                  const ReconState* state)
+      : problem_(problem),
+        weights_(weights),
+        with_planes_(with_planes),
+        common_share_(common_share),
+        state_(state) {}
+
+  void PrepareForEvaluation(bool evaluate_jacobians,
+                            bool new_evaluation_point) override {
+    if (new_evaluation_point) has_cost_ = has_system_ = false;
+    if (evaluate_jacobians && !has_system_) {
+      ComputeSystem();
+    } else if (!has_cost_) {
+      squares_ = RunJointPass(problem_, *state_, false).squares;
+      has_cost_ = true;
+    }
+    use_system_ = evaluate_jacobians;
+  }
+
+  // Constant added to the cost so that the last row never becomes imaginary:
+  // an approximate Hessian may explain more than there is.
+  void set_reserve(double reserve) { reserve_ = reserve; }
+
+  bool use_system() const { return use_system_; }
+  const JointSystem& system() const { return system_; }
+  const Eigen::Matrix<double, 4, 3>& basis(size_t plane) const {
+    return basis_[plane];
+  }
+  const PoseLift& lift(size_t keyframe) const { return lift_[keyframe]; }
+
+  double RestResidual() const {
+    const double total = weights_.texel_weight * squares_ + reserve_;
+    const double rest = total - (use_system_ ? system_.explained : 0.0);
+    return rest > 0 ? std::sqrt(rest) : 0.0;
+  }
+
+ private:
+  void ComputeSystem() {
+    basis_.clear();
+    const AnchoredPlaneManifold manifold;
+    for (int j = 0; with_planes_ && j < problem_.NumPlanes(); ++j) {
+      Eigen::Matrix<double, 4, 3, Eigen::RowMajor> p;
+      manifold.PlusJacobian(state_->planes.data() + kPlaneSize * j, p.data());
+      basis_.push_back(p);
+    }
+    lift_.clear();
+    for (int k = 0; k < problem_.NumKeyframes(); ++k) {
+      lift_.push_back(LeftPoseLift(state_->poses.data() + kPoseSize * k));
+    }
+    const JointPass pass = RunJointPass(problem_, *state_, true);
+    squares_ = pass.squares;
+    system_ = FactorJointSystem(problem_, pass, basis_, weights_.texel_weight,
+                                common_share_);
+    has_cost_ = has_system_ = true;
+  }
+
+  const TextureProblem& problem_;
+  const EnergyWeights& weights_;
+  bool with_planes_;
+  double common_share_;
+  const ReconState* state_;
+  double squares_ = 0, reserve_ = 0;
+  bool has_cost_ = false, has_system_ = false, use_system_ = false;
+  JointSystem system_;
+  std::vector<Eigen::Matrix<double, 4, 3>> basis_;
+  std::vector<PoseLift> lift_;
+};
+
+// Three rows of R: over one plane and the poses that see it.
+class PlaneRowsCost : public ceres::CostFunction {
+ public:
+  PlaneRowsCost(const JointEvaluation& evaluation, int plane, int num_poses)
+      : evaluation_(evaluation), plane_(plane) {
+    mutable_parameter_block_sizes()->assign(num_poses + 1, kPoseSize);
+    mutable_parameter_block_sizes()->front() = kPlaneSize;
+    set_num_residuals(3);
+  }
+
+  bool Evaluate(double const* const*,
+                double* residuals,
+                double** jacobians) const override {
+    Eigen::Map<Eigen::Vector3d> r(residuals);
+    r.setZero();
+    if (!evaluation_.use_system()) return true;
+    const JointPlaneRows& rows = evaluation_.system().planes[plane_];
+    r = rows.residual;
+    if (!jacobians) return true;
+    if (jacobians[0]) {
+      Eigen::Map<Eigen::Matrix<double, 3, 4, Eigen::RowMajor>> j(jacobians[0]);
+      j = rows.diagonal * evaluation_.basis(plane_).transpose();
+    }
+    for (size_t a = 0; a < rows.keyframes.size(); ++a) {
+      if (!jacobians[a + 1]) continue;
+      Eigen::Map<Eigen::Matrix<double, 3, kPoseSize, Eigen::RowMajor>> j(
+          jacobians[a + 1]);
+      j = rows.poses.middleCols<6>(6 * static_cast<Eigen::Index>(a)) *
+          evaluation_.lift(rows.keyframes[a]);
+    }
+    return true;
+  }
+
+ private:
+  const JointEvaluation& evaluation_;
+  int plane_;
+};
+
+// Six rows of R: over one pose and all later ones.
+class PoseRowsCost : public ceres::CostFunction {
+ public:
+  PoseRowsCost(const JointEvaluation& evaluation, int keyframe, int num_poses)
+      : evaluation_(evaluation), keyframe_(keyframe) {
+    mutable_parameter_block_sizes()->assign(num_poses - keyframe, kPoseSize);
+    set_num_residuals(6);
+  }
+
+  bool Evaluate(double const* const*,
+                double* residuals,
+                double** jacobians) const override {
+    Eigen::Map<Vector6d> r(residuals);
+    r.setZero();
+    if (!evaluation_.use_system()) return true;
+    const JointSystem& system = evaluation_.system();
+    r = system.pose_residual.segment<6>(6 * keyframe_);
+    if (!jacobians) return true;
+    for (size_t a = 0; a < parameter_block_sizes().size(); ++a) {
+      if (!jacobians[a]) continue;
+      const int other = keyframe_ + static_cast<int>(a);
+      Eigen::Map<Eigen::Matrix<double, 6, kPoseSize, Eigen::RowMajor>> j(
+          jacobians[a]);
+      j = system.poses.block<6, 6>(6 * keyframe_, 6 * other) *
+          evaluation_.lift(other);
+    }
+    return true;
+  }
+
+ private:
+  const JointEvaluation& evaluation_;
+  int keyframe_;
+};
+
+// What the rows do not explain: keeps the cost exact.
+class RestCost : public ceres::SizedCostFunction<1, kPoseSize> {
+ public:
+  explicit RestCost(const JointEvaluation& evaluation)
+      : evaluation_(evaluation) {}
+
+  bool Evaluate(double const* const*,
+                double* residuals,
+                double** jacobians) const override {
+    residuals[0] = evaluation_.RestResidual();
+    if (jacobians && jacobians[0]) {
+      std::fill(jacobians[0], jacobians[0] + kPoseSize, 0.0);
+    }
+    return true;
+  }
+
+ private:
+  const JointEvaluation& evaluation_;
+};
+
+std::vector<int> KeyframesOfPlane(const TextureProblem& problem, int plane) {
+  std::vector<int> keyframes;
+  for (size_t t = problem.plane_tile_begin[plane];
+       t < problem.plane_tile_begin[plane + 1]; ++t) {
+    for (size_t s = problem.tiles[t].segment_begin;
+         s < problem.tiles[t].segment_end; ++s) {
+      keyframes.push_back(problem.segments[s].keyframe);
+    }
+  }
+  std::sort(keyframes.begin(), keyframes.end());
+  keyframes.erase(std::unique(keyframes.begin(), keyframes.end()),
+                  keyframes.end());
+  return keyframes;
+}
+
+void AddBlocks(const TextureProblem& problem,
+               const EnergyWeights& weights,
+               const JointEvaluation& evaluation,
+               bool with_planes,
+               ReconState* state,
+               ceres::Problem* ceres_problem) {
+  const int num_keyframes = problem.NumKeyframes();
+  const auto pose = [&](int k) { return state->poses.data() + kPoseSize * k; };
+  for (int k = 0; k < num_keyframes; ++k) {
+    std::vector<double*> parameters;
+    for (int other = k; other < num_keyframes; ++other) {
+      parameters.push_back(pose(other));
+    }
+    ceres_problem->AddResidualBlock(
+        new PoseRowsCost(evaluation, k, num_keyframes), nullptr, parameters);
+    ceres_problem->SetManifold(pose(k), new LeftSe3Manifold);
+    if (weights.pose_prior) {
+      ceres_problem->AddResidualBlock(
+          PosePriorCost::Create(problem.initial_cam_from_world[k],
+                                weights.prior),
+          nullptr, pose(k));
+    }
+  }
+  ceres_problem->AddResidualBlock(new RestCost(evaluation), nullptr, pose(0));
+  for (int j = 0; with_planes && j < problem.NumPlanes(); ++j) {
+    const std::vector<int> keyframes = KeyframesOfPlane(problem, j);
+    if (keyframes.empty()) continue;
+    double* plane = state->planes.data() + kPlaneSize * j;
+    std::vector<double*> parameters = {plane};
+    for (const int k : keyframes) parameters.push_back(pose(k));
+    ceres_problem->AddResidualBlock(
+        new PlaneRowsCost(evaluation, j, static_cast<int>(keyframes.size())),
+        nullptr, parameters);
+    ceres_problem->AddResidualBlock(
+        new PlaneMomentCost(problem.moments[j],
+                            weights.texel_weight * weights.lambda1),
+        nullptr, plane);
+    ceres_problem->SetManifold(plane, new AnchoredPlaneManifold);
+  }
+}
+
+}  // namespace
+
+void SolveJoint(const TextureProblem& problem,
+                const EnergyWeights& weights,
+                unsigned blocks,
+                const SolverConfig& config,
+                SolverMemory* memory,
+                ReconState* state,
+                PhaseSummary* summary) {
+  const bool with_planes = (blocks & kPlanes) != 0;
+  JointEvaluation evaluation(problem, weights, with_planes,
+                             config.joint_common_share, state);
+  evaluation.set_reserve(
+      weights.texel_weight * RunJointPass(problem, *state, false).squares);
+  ceres::Problem::Options problem_options;
+  problem_options.evaluation_callback = &evaluation;
+  ceres::Problem ceres_problem(problem_options);
+  AddBlocks(problem, weights, evaluation, with_planes, state, &ceres_problem);
+
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::CGNR;
+  options.preconditioner_type = ceres::JACOBI;
+  options.max_linear_solver_iterations = 200;
+  options.eta = 0.03;
+  options.max_num_iterations = config.max_joint_iterations;
+  options.initial_trust_region_radius = memory->joint_radius;
+  options.max_trust_region_radius = config.max_joint_radius;
+  options.logging_type = ceres::SILENT;
+  options.num_threads = 1;  // the pass is parallel itself, in fixed order
+  options.function_tolerance = 1e-5;
+  ceres::Solver::Summary solved;
+  ceres::Solve(options, &ceres_problem, &solved);
+  summary->problems = 1;
+  summary->iterations = static_cast<int>(solved.iterations.size());
+  if (!solved.iterations.empty()) {
+    memory->joint_radius = std::clamp(
+        solved.iterations.back().trust_region_radius, 1.0,
+        config.max_joint_radius);
+  }
+  SolveColors(problem, state);
+}
+
+}  // namespace facet
