@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <map>
 #include <memory>
@@ -230,13 +231,19 @@ TriMesh ExtractMesh(Volume* volume) {
   return mesh;
 }
 
+// Open3D's threads meet after every block of 16^3 voxels: on cores that others
+// use, too, that is 20 times slower than one thread. It asks OpenMP for the
+// number of threads only if the variable is set.
+void UseOneOpen3dThread() {
+  setenv("OMP_NUM_THREADS", "1", 1);
+  omp_set_num_threads(1);
+}
+
 int Run() {
   CheckFlags();
   SetNumThreads(FLAGS_threads);
   o3d::utility::SetVerbosityLevel(o3d::utility::VerbosityLevel::Error);
-  // Open3D synchronises its threads at every block of 16^3 voxels: on cores
-  // that others use too, that is 20 times slower than one thread.
-  omp_set_num_threads(1);
+  UseOneOpen3dThread();
   const Stopwatch watch;
   SequenceOptions options = SequenceOptionsFromFlags();
   options.max_depth_m = std::min(options.max_depth_m, FLAGS_fuse_max_depth);
