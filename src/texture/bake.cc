@@ -305,7 +305,7 @@ class Baker {
         report.samples += samples[n * v + i].weight > 0;
       }
     }
-    for (int pass = 0; pass < options_.robust_passes; ++pass) {
+    if (options_.robust_luma > 0) {
       DropOutliers(n, owned, views.size(), &samples, &report.dropped);
     }
     const std::vector<ColorSample> mean = WeightedMean(
@@ -341,30 +341,36 @@ class Baker {
     return sum;
   }
 
-  // Takes away samples far from the mean, unless none would remain.
+  // Takes away samples whose luma is far from the weighted median.
   void DropOutliers(size_t n,
                     size_t owned,
                     size_t num_views,
                     std::vector<ColorSample>* samples,
                     size_t* dropped) const {
-    const std::vector<ColorSample> mean =
-        WeightedMean(*samples, n, num_views, 1);
     const float limit = static_cast<float>(options_.robust_luma);
-    std::vector<uint16_t> good(n, 0);
-    const auto is_far = [&](size_t i, const ColorSample& sample) {
-      return std::abs(Luma(sample.rgb) - Luma(mean[i].rgb)) > limit;
-    };
-    for (size_t v = 0; v < num_views; ++v) {
-      for (size_t i = 0; i < n; ++i) {
+    std::vector<std::pair<float, float>> lumas;  // luma, weight
+    for (size_t i = 0; i < n; ++i) {
+      lumas.clear();
+      float total = 0;
+      for (size_t v = 0; v < num_views; ++v) {
         const ColorSample& sample = (*samples)[n * v + i];
-        good[i] += sample.weight > 0 && !is_far(i, sample);
+        if (!(sample.weight > 0)) continue;
+        lumas.emplace_back(Luma(sample.rgb), sample.weight);
+        total += sample.weight;
       }
-    }
-    for (size_t v = 0; v < num_views; ++v) {
-      for (size_t i = 0; i < n; ++i) {
+      if (lumas.size() < 2) continue;
+      std::sort(lumas.begin(), lumas.end());
+      float sum = 0, median = lumas.back().first;
+      for (const auto& [luma, weight] : lumas) {
+        sum += weight;
+        if (2 * sum < total) continue;
+        median = luma;
+        break;
+      }
+      for (size_t v = 0; v < num_views; ++v) {
         ColorSample& sample = (*samples)[n * v + i];
-        if (!(sample.weight > 0) || good[i] == 0) continue;
-        if (!is_far(i, sample)) continue;
+        if (!(sample.weight > 0)) continue;
+        if (std::abs(Luma(sample.rgb) - median) <= limit) continue;
         sample.weight = 0;
         *dropped += i < owned;
       }

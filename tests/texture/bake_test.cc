@@ -1,0 +1,392 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+#include "texture/bake.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/texture/memory_sequence.h"
+#include "tests/texture/texture_scenes.h"
+#include "texture/fill_texture.h"
+#include "texture/textured_mesh.h"
+#include "util/errors.h"
+#include "util/parallel_for.h"
+#include "util/random.h"
+
+namespace facet {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+// A wall of 0.15 x 0.12 m at z = 0.5 whose colour is linear in x and y: 3.5
+// grey values a texel, so that a shift by half a texel shows.
+Vector3d Paint(const Vector3d& x) {
+  return {128 + 1400 * x.x(), 128 + 1400 * x.y(), 128 - 700 * x.x()};
+}
+cv::Vec3b Pixel(const Vector3d& x) {
+  const Vector3d c = Paint(x);
+  return {cv::saturate_cast<uint8_t>(c[0]),
+          cv::saturate_cast<uint8_t>(c[1]),
+          cv::saturate_cast<uint8_t>(c[2])};
+}
+
+class Wall {
+ public:
+  explicit Wall(int num_frames = 3) : sequence(TestCalibration()) {
+    AddQuadGrid(Vector3d(-0.075, -0.06, 0.5),
+                Vector3d(0.15, 0, 0),
+                Vector3d(0, 0.12, 0),
+                3,
+                2,
+                &scene);
+    atlas = BuildAtlas(scene.mesh, scene.partition, {});
+    for (int i = 0; i < num_frames; ++i) {
+      Add(Pose(Eigen::Quaterniond(Eigen::AngleAxisd(
+                   0.04 * i, Vector3d(1, 2, 0.5).normalized())),
+               Vector3d(0.01 * i, -0.02 * i, 0.02 * i)));
+    }
+    visibility.test_depth_edges = false;  // the wall is small
+    visibility.image_margin_px = 0;
+    options.border_feather_px = 0;
+    lattice = {20, 16, 320, 240};
+  }
+
+  // The images continue beyond the wall, so that gutters have a right answer.
+  void Add(const Pose& pose) {
+    const TriMesh wide = WideWall();
+    sequence.AddRendered(wide, pose, Pixel);
+  }
+
+  TriMesh WideWall() const {
+    PlaneScene wide;
+    AddQuadGrid(Vector3d(-1, -1, 0.5),
+                Vector3d(2, 0, 0),
+                Vector3d(0, 2, 0),
+                1,
+                1,
+                &wide);
+    return wide.mesh;
+  }
+
+  std::vector<cv::Mat> Bake(const std::vector<double>& warps = {}) {
+    const auto frames = sequence.AllFrames();
+    return BakeTexture(scene.mesh,
+                       scene.Planes(),
+                       atlas,
+                       RayScene(scene.mesh),
+                       sequence,
+                       frames,
+                       LoadKeyframeImages(sequence, frames, 0),
+                       sequence.AllPoses(),
+                       lattice,
+                       warps,
+                       visibility,
+                       options,
+                       &report);
+  }
+
+  TexturedMesh Model(const std::vector<cv::Mat>& pages) const {
+    TexturedMesh model;
+    model.mesh = scene.mesh;
+    model.face_uv = atlas.face_uv;
+    model.face_page = atlas.face_page;
+    model.pages = pages;
+    return model;
+  }
+
+  // Largest |page - paint| over the texels up to `ring` px outside the faces.
+  double LargestError(const cv::Mat& page, int ring) const {
+    const Chart& chart = atlas.charts[0];
+    double worst = 0;
+    for (int y = atlas.gutter_px - ring;
+         y < chart.height - atlas.gutter_px + ring;
+         ++y) {
+      for (int x = atlas.gutter_px - ring;
+           x < chart.width - atlas.gutter_px + ring;
+           ++x) {
+        const Vector3d q =
+            chart.origin +
+            atlas.spacing_m * ((x + 0.5) * chart.e1 + (y + 0.5) * chart.e2);
+        const auto& c = page.at<cv::Vec3b>(chart.y + y, chart.x + x);
+        const Vector3d right = Paint(q);
+        for (int k = 0; k < 3; ++k) {
+          worst = std::max(worst, std::abs(c[k] - right[k]));
+        }
+      }
+    }
+    return worst;
+  }
+
+  PlaneScene scene;
+  Atlas atlas;
+  MemorySequence sequence;
+  VisibilityOptions visibility;
+  BakeOptions options;
+  WarpLattice lattice;
+  BakeReport report;
+};
+
+TEST(Bake, ReproducesTheWallAndItsGutter) {
+  // Linear paint passes bilinear lookups unchanged; what is left is rounding to
+  // 8 bits in image and page. Shifts of half a texel or pixel are 2 and more.
+  for (BakeSampler sampler : {BakeSampler::kBilinear, BakeSampler::kBicubic}) {
+    Wall wall;
+    wall.options.sampler = sampler;
+    const auto pages = wall.Bake();
+    ASSERT_EQ(pages.size(), 1u);
+    EXPECT_LT(wall.LargestError(pages[0], 0), 1.3);
+    EXPECT_LT(wall.LargestError(pages[0], wall.options.ring_px), 1.3);
+    EXPECT_EQ(wall.report.seen, wall.report.texels);
+    EXPECT_EQ(wall.report.texels, 60u * 48u);
+    EXPECT_NEAR(wall.report.mean_views, 3, 1e-9);
+    EXPECT_EQ(cv::countNonZero(wall.report.unseen_mask[0]), 0);
+  }
+}
+
+TEST(Bake, LookupsOnFacesHaveNoHalfPixelShift) {
+  // The round trip face point -> uv -> page -> colour against the paint there.
+  Wall wall;
+  const TexturedMesh model = wall.Model(wall.Bake());
+  Random random(1);
+  for (int i = 0; i < 300; ++i) {
+    const int face = static_cast<int>(random.Index(model.mesh.NumFaces()));
+    float u = static_cast<float>(random.Uniform());
+    float v = static_cast<float>(random.Uniform());
+    if (u + v > 1) {
+      u = 1 - u;
+      v = 1 - v;
+    }
+    const auto& f = model.mesh.faces[face];
+    const Vector3d p = (1.0 - u - v) * model.mesh.vertices[f[0]] +
+                       u * model.mesh.vertices[f[1]] +
+                       v * model.mesh.vertices[f[2]];
+    EXPECT_LT((ColorAt(model, face, u, v).cast<double>() - Paint(p))
+                  .cwiseAbs()
+                  .maxCoeff(),
+              1.3);
+  }
+}
+
+TEST(Bake, OuterGutterCopiesTheEdge) {
+  // Beyond the ring the gutter is constant outwards; no background shows.
+  Wall wall;
+  wall.options.ring_px = 0;
+  const cv::Mat page = wall.Bake()[0];
+  const Chart& chart = wall.atlas.charts[0];
+  const int y = chart.y + chart.height / 2;
+  for (int x = 1; x <= 8; ++x) {
+    EXPECT_EQ(page.at<cv::Vec3b>(y, chart.x + 8 - x),
+              page.at<cv::Vec3b>(y, chart.x + 8));
+  }
+}
+
+TEST(Bake, RobustPassRemovesHighlights) {
+  // One frame of seven carries a white blot. Without the robust pass the mean
+  // is off by more than 10 grey values there. (A trimmed mean fails here: the
+  // highlight pulls it so far that good samples go as well.)
+  Wall wall(7);
+  cv::Mat& image = wall.sequence.color(3);
+  image.setTo(cv::Scalar(255, 255, 255));
+  wall.options.robust_luma = 0;
+  wall.options.sharpness_power = 0;
+  EXPECT_GT(wall.LargestError(wall.Bake()[0], 0), 10);
+  EXPECT_EQ(wall.report.dropped, 0u);
+  wall.options.robust_luma = 0.1;
+  EXPECT_LT(wall.LargestError(wall.Bake()[0], 0), 1.3);
+  EXPECT_GT(wall.report.dropped, 2000u);
+}
+
+TEST(Bake, BestViewPowerPrefersTheNearView) {
+  // Two frames that disagree, one at half the distance: with a large power the
+  // near one decides, with all powers 0 the mean does.
+  Wall wall(0);
+  wall.Add(Pose());
+  wall.Add(Pose(Eigen::Quaterniond::Identity(), Vector3d(0, 0, 0.5)));
+  wall.sequence.color(0).setTo(cv::Scalar(80, 80, 80));
+  wall.sequence.color(1).setTo(cv::Scalar(120, 120, 120));
+  wall.options.robust_luma = 0;
+  wall.options.sharpness_power = 0;
+  wall.options.best_view_power = 16;
+  const Chart& chart = wall.atlas.charts[0];
+  const int x = chart.x + chart.width / 2, y = chart.y + chart.height / 2;
+  EXPECT_EQ(wall.Bake()[0].at<cv::Vec3b>(y, x)[0], 80);
+  wall.options.angle_power = wall.options.depth_power = 0;
+  wall.options.best_view_power = 1;
+  EXPECT_EQ(wall.Bake()[0].at<cv::Vec3b>(y, x)[0], 100);
+}
+
+TEST(Bake, WarpMovesTheLookup) {
+  // A constant warp of (2, 0) px reads the paint 2 px further right: 4 mm at
+  // f = 250 and z = 0.5, that is 5.6 grey values of red.
+  Wall wall(1);
+  std::vector<double> warp(2ul * wall.lattice.NumVertices(), 0);
+  for (size_t i = 0; i < warp.size(); i += 2) warp[i] = 2;
+  const cv::Mat plain = wall.Bake()[0], moved = wall.Bake(warp)[0];
+  const Chart& chart = wall.atlas.charts[0];
+  const int x = chart.x + chart.width / 2, y = chart.y + chart.height / 2;
+  EXPECT_NEAR(
+      moved.at<cv::Vec3b>(y, x)[0] - plain.at<cv::Vec3b>(y, x)[0], 5.6, 1.1);
+  EXPECT_NEAR(
+      moved.at<cv::Vec3b>(y, x)[1] - plain.at<cv::Vec3b>(y, x)[1], 0, 1.1);
+}
+
+TEST(Bake, UnseenTexelsAreFilledAndMarked) {
+  // The sensor saw nothing in a band of the wall: marked in the mask, filled
+  // smoothly; linear paint is met by interpolation up to a few texels' worth.
+  Wall wall;
+  for (int i = 0; i < 3; ++i) {
+    const Pose pose = wall.sequence.frames()[i].depth_cam_from_world;
+    for (double x = -0.01; x <= 0.01; x += 0.001) {
+      for (double y = -0.07; y <= 0.07; y += 0.001) {
+        const auto u = wall.sequence.calibration().depth.Project(
+            Vector3d(pose * Vector3d(x, y, 0.5)));
+        wall.sequence.depth(i).at<float>(cvRound(u.y()), cvRound(u.x())) = 0;
+      }
+    }
+  }
+  const auto pages = wall.Bake();
+  EXPECT_LT(wall.report.seen, wall.report.texels);
+  EXPECT_EQ(static_cast<size_t>(cv::countNonZero(wall.report.unseen_mask[0])),
+            wall.report.texels - wall.report.seen);
+  EXPECT_LT(wall.LargestError(pages[0], 0), 25);
+}
+
+TEST(Bake, WallWithoutAnyFrameTakesVertexColours) {
+  Wall wall(0);
+  wall.scene.mesh.vertex_colors.assign(wall.scene.mesh.NumVertices(),
+                                       Rgb{10, 20, 30});
+  const cv::Mat page = wall.Bake()[0];
+  const Chart& chart = wall.atlas.charts[0];
+  EXPECT_EQ(page.at<cv::Vec3b>(chart.y + 20, chart.x + 20),
+            cv::Vec3b(10, 20, 30));
+  EXPECT_EQ(wall.report.seen, 0u);
+}
+
+TEST(Bake, SteepFacesAreColouredWhereTheyAre) {
+  // A step of 4 cm depth whose riser belongs to the wall's cluster: its texels
+  // must show the riser's paint, which depends on z only.
+  PlaneScene scene;
+  AddQuadGrid(Vector3d(-0.1, -0.1, 0.5),
+              Vector3d(0.2, 0, 0),
+              Vector3d(0, 0.2, 0),
+              2,
+              2,
+              &scene);
+  AddQuadGrid(Vector3d(-0.1, 0.1, 0.5),
+              Vector3d(0.2, 0, 0),
+              Vector3d(0, 0, -0.1),
+              2,
+              2,
+              &scene);
+  scene.partition.clusters.resize(1);
+  scene.partition.face_cluster.assign(scene.mesh.NumFaces(), 0);
+  const Atlas atlas = BuildAtlas(scene.mesh, scene.partition, {});
+  MemorySequence sequence(TestCalibration());
+  const auto paint = [](const Vector3d& x) {
+    const auto grey = static_cast<uint8_t>(std::lround(400 * x.z()));
+    return cv::Vec3b(grey, grey, grey);
+  };
+  // From above, looking down at the floor-like riser.
+  const Pose pose(Eigen::Quaterniond(Eigen::AngleAxisd(0.5, Vector3d::UnitX())),
+                  Vector3d(0, 0.15, 0.2));
+  for (int i = 0; i < 2; ++i) sequence.AddRendered(scene.mesh, pose, paint);
+  BakeReport report;
+  VisibilityOptions visibility;
+  visibility.test_depth_edges = false;
+  const auto pages =
+      BakeTexture(scene.mesh,
+                  scene.Planes(),
+                  atlas,
+                  RayScene(scene.mesh),
+                  sequence,
+                  sequence.AllFrames(),
+                  LoadKeyframeImages(sequence, sequence.AllFrames(), 0),
+                  sequence.AllPoses(),
+                  {20, 16, 320, 240},
+                  {},
+                  visibility,
+                  {},
+                  &report);
+  size_t checked = 0;
+  for (size_t c = 0; c < atlas.charts.size(); ++c) {
+    const Chart& chart = atlas.charts[c];
+    if (!chart.steep) continue;
+    const auto owners = ChartOwners(atlas, static_cast<int>(c));
+    for (int y = 10; y < chart.height - 10; ++y) {
+      for (int x = 10; x < chart.width - 10; ++x) {
+        if (owners[static_cast<size_t>(y) * chart.width + x] < 0) continue;
+        if (report.unseen_mask[0].at<uint8_t>(chart.y + y, chart.x + x)) {
+          continue;
+        }
+        const Vector3d p =
+            chart.origin +
+            atlas.spacing_m * ((x + 0.5) * chart.e1 + (y + 0.5) * chart.e2);
+        EXPECT_NEAR(pages[0].at<cv::Vec3b>(chart.y + y, chart.x + x)[0],
+                    400 * p.z(),
+                    2.5);
+        ++checked;
+      }
+    }
+  }
+  EXPECT_GT(checked, 500u);
+}
+
+TEST(Bake, SameAtAnyThreadCount) {
+  Wall wall(5);
+  SetNumThreads(1);
+  const cv::Mat one = wall.Bake()[0];
+  SetNumThreads(4);
+  const cv::Mat four = wall.Bake()[0];
+  SetNumThreads(0);
+  EXPECT_EQ(cv::norm(one, four, cv::NORM_INF), 0);
+}
+
+TEST(Bake, RefusesBadPowers) {
+  Wall wall(1);
+  wall.options.best_view_power = 0;
+  EXPECT_THROW(wall.Bake(), OptionsError);
+}
+
+TEST(PushPull, KeepsWhatIsKnownAndStaysWithinIt) {
+  // Known pixels unchanged, filled ones inside the range of known ones; nothing
+  // known: false.
+  Random random(2);
+  const int width = 37, height = 21;
+  std::vector<float> weight(width * height, 0);
+  std::vector<Vector3f> color(width * height, Vector3f::Zero());
+  for (int i = 0; i < 40; ++i) {
+    const size_t j = random.Index(weight.size());
+    weight[j] = 1;
+    color[j] = Vector3f::Constant(static_cast<float>(random.Uniform(50, 90)));
+  }
+  std::vector<Vector3f> filled = color;
+  ASSERT_TRUE(PushPull(width, height, weight, &filled));
+  for (size_t i = 0; i < weight.size(); ++i) {
+    if (weight[i] > 0) {
+      EXPECT_EQ(filled[i], color[i]);
+    }
+    EXPECT_GE(filled[i].x(), 50 - 1e-3);
+    EXPECT_LE(filled[i].x(), 90 + 1e-3);
+  }
+  weight.assign(weight.size(), 0);
+  EXPECT_FALSE(PushPull(width, height, weight, &filled));
+}
+
+TEST(KeyframeImages, LumaAndSmoothMatchTheImage) {
+  // A grey ramp keeps its values under luma and, inside, under the Gaussian.
+  Wall wall(2);
+  const auto images = LoadKeyframeImages(wall.sequence, {1, 0}, 0.8);
+  ASSERT_EQ(images.size(), 2u);
+  const auto& c = wall.sequence.color(1).at<cv::Vec3b>(100, 100);
+  EXPECT_NEAR(images.luma[0].at<float>(100, 100),
+              (0.299 * c[0] + 0.587 * c[1] + 0.114 * c[2]) / 255,
+              1e-5);
+  EXPECT_NEAR(images.smooth[0].at<float>(120, 160),
+              images.luma[0].at<float>(120, 160),
+              0.01);
+}
+
+}  // namespace
+}  // namespace facet

@@ -1,0 +1,237 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+#include "texture/observations.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/texture/memory_sequence.h"
+#include "tests/texture/texture_scenes.h"
+#include "texture/atlas.h"
+#include "util/parallel_for.h"
+
+namespace facet {
+namespace {
+
+using Eigen::Vector3d;
+
+// A wall of 1.6 x 1.2 m at z = 2, seen from the origin along +z, and a square
+// of 0.2 m before it at z = 1.2. Both look towards -z.
+class Scene {
+ public:
+  explicit Scene(bool with_occluder = true, int num_frames = 3)
+      : sequence(TestCalibration()) {
+    AddQuadGrid(Vector3d(-0.8, -0.6, 2),
+                Vector3d(1.6, 0, 0),
+                Vector3d(0, 1.2, 0),
+                8,
+                6,
+                &scene);
+    if (with_occluder) {
+      AddQuadGrid(Vector3d(-0.1, -0.1, 1.2),
+                  Vector3d(0.2, 0, 0),
+                  Vector3d(0, 0.2, 0),
+                  1,
+                  1,
+                  &scene);
+    }
+    AtlasOptions options;
+    options.texel_size_m = 0.01;
+    atlas = BuildAtlas(scene.mesh, scene.partition, options);
+    texels = SampleTexels(scene.mesh, scene.partition, atlas, 1);
+    for (int i = 0; i < num_frames; ++i) {
+      // Camera centres (0.15 i, 0.05 i, 0).
+      const Pose pose(Eigen::Quaterniond::Identity(),
+                      Vector3d(-0.15 * i, -0.05 * i, 0));
+      sequence.AddRendered(scene.mesh, pose, [](const Vector3d&) {
+        return cv::Vec3b(100, 100, 100);
+      });
+    }
+    off.test_occlusion = off.test_sensor_depth = off.test_angle =
+        off.test_depth_edges = false;
+    off.min_views = 1;
+  }
+
+  Observations Compute(const VisibilityOptions& options) {
+    return ComputeObservations(texels,
+                               scene.Planes(),
+                               scene.mesh,
+                               RayScene(scene.mesh),
+                               sequence,
+                               sequence.AllFrames(),
+                               sequence.AllPoses(),
+                               options,
+                               &counts);
+  }
+
+  PlaneScene scene;
+  Atlas atlas;
+  TexelSet texels;
+  MemorySequence sequence;
+  VisibilityOptions off;
+  VisibilityCounts counts;
+};
+
+std::vector<uint8_t> SeenBy(const Observations& o, int k, size_t n) {
+  std::vector<uint8_t> seen(n, 0);
+  for (size_t i = o.begin[k]; i < o.begin[k + 1]; ++i) seen[o.texel[i]] = 1;
+  return seen;
+}
+
+TEST(Observations, NoTestsButTheImageAreExact) {
+  // Without switches a texel is seen iff it projects inside the margin.
+  Scene s(false);
+  const Observations o = s.Compute(s.off);
+  for (int k = 0; k < 3; ++k) {
+    const auto seen = SeenBy(o, k, s.texels.size());
+    for (size_t i = 0; i < s.texels.size(); ++i) {
+      const Vector3d y =
+          s.sequence.AllPoses()[k] * s.texels.position[i].cast<double>();
+      const Pinhole& camera = s.sequence.calibration().color;
+      const auto u = camera.Project(y);
+      const double slack =
+          std::min({u.x() - 5, u.y() - 5, 314 - u.x(), 234 - u.y()});
+      if (std::abs(slack) < 1e-3) continue;
+      ASSERT_EQ(seen[i] != 0, slack > 0);
+    }
+  }
+  EXPECT_EQ(s.counts.candidates, 3 * s.texels.size());
+  EXPECT_EQ(s.counts.used, o.size());
+  EXPECT_EQ(s.counts.used + s.counts.outside_image, s.counts.candidates);
+}
+
+TEST(Observations, OccluderHidesExactlyItsShadow) {
+  // A wall texel is hidden iff the segment to the camera crosses the square.
+  // Fails with a z-buffer alone (pixel errors along the silhouette).
+  Scene s;
+  VisibilityOptions options = s.off;
+  options.test_occlusion = true;
+  options.image_margin_px = 0;
+  const Observations o = s.Compute(options);
+  size_t hidden = 0;
+  for (int k = 0; k < 3; ++k) {
+    const auto seen = SeenBy(o, k, s.texels.size());
+    const Vector3d c = s.sequence.AllPoses()[k].CenterInSource();
+    for (size_t i = 0; i < s.texels.size(); ++i) {
+      const Vector3d p = s.texels.position[i].cast<double>();
+      const auto u = s.sequence.calibration().color.Project(
+          Vector3d(s.sequence.AllPoses()[k] * p));
+      if (!s.sequence.calibration().color.Contains(u, 0.01)) continue;
+      const Vector3d x = c + (p - c) * ((1.2 - c.z()) / (p.z() - c.z()));
+      const double edge = 0.1 - std::max(std::abs(x.x()), std::abs(x.y()));
+      if (std::abs(edge) < 1e-4) continue;
+      const bool in_shadow = s.texels.plane[i] == 0 && edge > 0;
+      ASSERT_EQ(seen[i] != 0, !in_shadow) << "texel " << i;
+      hidden += in_shadow;
+    }
+  }
+  EXPECT_GT(hidden, 1000u);
+  EXPECT_EQ(s.counts.occluded, hidden);
+}
+
+TEST(Observations, SensorDepthRefusesWhatItContradicts) {
+  // The sensor says 10 cm behind the wall in one half of frame 0.
+  Scene s(false);
+  VisibilityOptions options = s.off;
+  options.test_sensor_depth = true;
+  options.image_margin_px = 10;  // all of it inside the depth image too
+  const size_t all = s.Compute(s.off).size();
+  EXPECT_GT(s.Compute(options).size(), all / 2);
+  EXPECT_EQ(s.counts.depth_disagrees, 0u);
+  cv::Mat& depth = s.sequence.depth(0);
+  depth(cv::Rect(0, 0, 120, 180)) += 0.1f;
+  const Observations o = s.Compute(options);
+  EXPECT_GT(s.counts.depth_disagrees, 1000u);
+  for (size_t i = o.begin[0]; i < o.begin[1]; ++i) {
+    // Depth pixel 119.5 is x = -0.02 in the world (depth camera 2 cm left).
+    EXPECT_GT(s.texels.position[o.texel[i]].x(), -0.02f - 0.011f);
+  }
+}
+
+TEST(Observations, MissingDepthIsAChoice) {
+  Scene s(false);
+  s.sequence.depth(1).setTo(0);
+  VisibilityOptions options = s.off;
+  options.test_sensor_depth = true;
+  Observations o = s.Compute(options);
+  EXPECT_EQ(o.begin[1], o.begin[2]);
+  EXPECT_GT(s.counts.depth_missing, 0u);
+  options.allow_missing_depth = true;
+  o = s.Compute(options);
+  EXPECT_GT(o.begin[2], o.begin[1]);
+  EXPECT_EQ(s.counts.depth_missing, 0u);
+}
+
+TEST(Observations, AngleLimitIsThatOfThePlane) {
+  Scene s(false);
+  VisibilityOptions options = s.off;
+  options.test_angle = true;
+  options.max_angle_deg = 15;
+  const Observations o = s.Compute(options);
+  EXPECT_GT(s.counts.grazing, 0u);
+  for (int k = 0; k < 3; ++k) {
+    const Vector3d c = s.sequence.AllPoses()[k].CenterInSource();
+    for (size_t i = o.begin[k]; i < o.begin[k + 1]; ++i) {
+      const Vector3d v = s.texels.position[o.texel[i]].cast<double>() - c;
+      EXPECT_LT(std::acos(v.z() / v.norm()) * 180 / M_PI, 15.001);
+    }
+  }
+}
+
+TEST(Observations, BackFacesAreNeverSeen) {
+  // The same wall turned over: nothing is left.
+  Scene s(false);
+  auto& plane = s.scene.partition.clusters[0].plane;
+  plane.normal = -plane.normal;
+  plane.offset = -plane.offset;
+  VisibilityOptions options = s.off;
+  options.test_angle = true;
+  EXPECT_EQ(s.Compute(options).size(), 0u);
+}
+
+TEST(Observations, DepthEdgesKeepTheirDistance) {
+  // With the occluder in view, texels within 3 depth pixels of its outline go.
+  Scene s;
+  VisibilityOptions options = s.off;
+  options.test_depth_edges = true;
+  const size_t all = s.Compute(s.off).size();
+  const size_t left = s.Compute(options).size();
+  EXPECT_GT(s.counts.depth_edge, 0u);
+  EXPECT_EQ(left + s.counts.depth_edge, all);
+}
+
+TEST(Observations, DepthRangeAndMinViews) {
+  Scene s(false);
+  VisibilityOptions options = s.off;
+  options.max_depth_m = 1.9;
+  EXPECT_EQ(s.Compute(options).size(), 0u);
+  EXPECT_EQ(s.counts.behind_or_far, s.counts.candidates);
+  options = s.off;
+  options.min_views = 3;
+  options.image_margin_px = 90;  // smaller images, so that they see less
+  const Observations o = s.Compute(options);
+  std::vector<int> views(s.texels.size(), 0);
+  for (uint32_t t : o.texel) ++views[t];
+  for (int v : views) EXPECT_TRUE(v == 0 || v == 3);
+  EXPECT_GT(s.counts.too_few_views, 0u);
+  EXPECT_EQ(s.counts.used + s.counts.too_few_views + s.counts.outside_image,
+            s.counts.candidates);
+}
+
+TEST(Observations, SameAtAnyThreadCount) {
+  Scene s;
+  VisibilityOptions options;
+  options.min_views = 1;
+  SetNumThreads(1);
+  const Observations one = s.Compute(options);
+  SetNumThreads(4);
+  const Observations four = s.Compute(options);
+  SetNumThreads(0);
+  EXPECT_TRUE(one.begin == four.begin);
+  EXPECT_TRUE(one.texel == four.texel);
+  EXPECT_GT(one.size(), 0u);
+}
+
+}  // namespace
+}  // namespace facet
