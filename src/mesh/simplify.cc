@@ -1,0 +1,130 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+#include "mesh/simplify.h"
+
+#include <Eigen/Eigenvalues>
+#include <string>
+
+#include "mesh/adjacency.h"
+#include "mesh/simplify_internal.h"
+#include "util/errors.h"
+
+namespace facet {
+namespace {
+
+void CheckOptions(const SimplifyOptions& o) {
+  const auto require = [](bool ok, const char* what) {
+    if (!ok) throw OptionsError(std::string("simplification: ") + what);
+  };
+  require(o.inner_target >= 0, "inner_target must not be negative");
+  require(o.border_ratio > 0 && o.border_ratio <= 1,
+          "border_ratio must lie in (0, 1]");
+  require(o.passes >= 1, "passes must be at least 1");
+  require(o.target_faces >= 0, "target_faces must not be negative");
+  require(o.target_faces > 0 || o.faces_per_m2 > 0,
+          "faces_per_m2 must be positive");
+  require(o.free_error_m >= 0 && o.max_error_m > 0,
+          "error bounds must be positive");
+  require(o.cluster_plane_share >= 0 && o.cluster_plane_share <= 1,
+          "cluster_plane_share must lie in [0, 1]");
+  require(o.cluster_border_weight >= 0 && o.mesh_boundary_weight >= 0 &&
+              o.point_share >= 0,
+          "weights must not be negative");
+  require(o.max_turn_deg > 0 && o.max_turn_deg < 90,
+          "max_turn_deg must lie in (0, 90)");
+  require(o.max_plane_deg > 0 && o.max_plane_deg < 90,
+          "max_plane_deg must lie in (0, 90)");
+}
+
+int CountBorderEdges(const TriMesh& mesh, const std::vector<int>& labels) {
+  int count = 0;
+  for (const MeshEdge& edge : CollectEdges(mesh)) {
+    count += IsBorder(edge, labels);
+  }
+  return count;
+}
+
+}  // namespace
+
+std::vector<PlaneCluster> RefitClusters(const TriMesh& mesh,
+                                        const PlanarPartition& partition) {
+  const size_t n = partition.clusters.size();
+  std::vector<PlaneCluster> clusters(n);
+  std::vector<Eigen::Vector3d> cross(n, Eigen::Vector3d::Zero());
+  std::vector<Eigen::Matrix3d> covariance(n, Eigen::Matrix3d::Zero());
+  for (size_t f = 0; f < mesh.NumFaces(); ++f) {
+    const int id = partition.face_cluster[f];
+    const double area = mesh.FaceArea(f);
+    ++clusters[id].num_faces;
+    clusters[id].area += area;
+    clusters[id].centroid += area * mesh.FaceCentroid(f);
+    cross[id] += mesh.FaceCross(f);
+  }
+  for (PlaneCluster& cluster : clusters) {
+    if (cluster.area > 0) cluster.centroid /= cluster.area;
+  }
+  // Integral of x x' over a triangle with corners x_k about the centroid:
+  // area / 12 (sum x_k x_k' + (sum x_k)(sum x_k)').
+  for (size_t f = 0; f < mesh.NumFaces(); ++f) {
+    const int id = partition.face_cluster[f];
+    Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d total = Eigen::Vector3d::Zero();
+    for (const int v : mesh.faces[f]) {
+      const Eigen::Vector3d x = mesh.vertices[v] - clusters[id].centroid;
+      sum += x * x.transpose();
+      total += x;
+    }
+    covariance[id] += mesh.FaceArea(f) / 12 * (sum + total * total.transpose());
+  }
+  for (size_t id = 0; id < n; ++id) {
+    PlaneCluster& cluster = clusters[id];
+    cluster.plane = partition.clusters[id].plane;
+    if (!(cluster.area > 0)) continue;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance[id]);
+    cluster.plane.normal = solver.eigenvectors().col(0);
+    if (cluster.plane.normal.dot(cross[id]) < 0) cluster.plane.normal *= -1;
+    cluster.plane.offset = -cluster.plane.normal.dot(cluster.centroid);
+    cluster.rms =
+        std::sqrt(std::max(0.0, solver.eigenvalues()[0]) / cluster.area);
+  }
+  return clusters;
+}
+
+SimplifyResult SimplifyByPlanes(const TriMesh& mesh,
+                                const PlanarPartition& partition,
+                                const SimplifyOptions& options) {
+  CheckOptions(options);
+  SimplifyResult result;
+  SimplifyReport& report = result.report;
+  report.checks_before = CheckMesh(mesh);
+  report.faces_before = static_cast<int>(mesh.NumFaces());
+  report.flipped_before = CountFlippedFaces(mesh, partition);
+  report.border_edges_before = CountBorderEdges(mesh, partition.face_cluster);
+
+  Collapser collapser(mesh, partition, options);
+  if (options.stop == SimplifyStop::kCounts) {
+    collapser.RunCounts();
+  } else {
+    collapser.RunBudget();
+  }
+  result.partition.clusters = partition.clusters;
+  collapser.Extract(&result);
+  if (!mesh.vertex_colors.empty()) {
+    for (const int v : result.vertex_birth) {
+      result.mesh.vertex_colors.push_back(mesh.vertex_colors[v]);
+    }
+  }
+
+  result.refit = RefitClusters(result.mesh, result.partition);
+  for (size_t id = 0; id < result.refit.size(); ++id) {
+    result.partition.clusters[id].num_faces = result.refit[id].num_faces;
+  }
+  report.checks_after = CheckMesh(result.mesh);
+  report.faces_after = static_cast<int>(result.mesh.NumFaces());
+  report.flipped_after = CountFlippedFaces(result.mesh, result.partition);
+  report.border_edges_after =
+      CountBorderEdges(result.mesh, result.partition.face_cluster);
+  return result;
+}
+
+}  // namespace facet

@@ -1,0 +1,113 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+//
+// Two-step cluster-wise simplification by quadric error metrics (paper,
+// Sec. 3.2; method, ch. 3): few large triangles inside the planes, shape kept
+// where planes meet. Edges fall into three classes:
+//
+//   inner    no end on a cluster border (or one end, with collapse_to_border):
+//            step 1 collapses them, border vertices stay where they are;
+//   border   mesh boundary, or between two clusters: step 2 collapses them,
+//            inner vertices stay where they are;
+//   chord    both ends on borders, the edge itself inside a cluster: never
+//            collapsed, it would pinch the cluster.
+//
+// Corners (border vertices with other than two border edges) are never moved
+// nor removed. A collapse must pass the link condition, on the mesh and on its
+// labels, and the shape checks below.
+#pragma once
+
+#include <vector>
+
+#include "mesh/mesh_checks.h"
+#include "mesh/planar_partition.h"
+#include "mesh/tri_mesh.h"
+
+namespace facet {
+
+enum class SimplifyStop {
+  // The literal paper: step 1 until every cluster has inner_target inner edges,
+  // step 2 until border_ratio of the border edges is left, `passes` times.
+  kCounts,
+  // Both steps interleaved, cheapest collapse first over all clusters, until
+  // the face budget is met: the faces go where the shape needs them.
+  kBudget,
+};
+
+struct SimplifyOptions {
+  SimplifyStop stop = SimplifyStop::kBudget;
+
+  // kCounts.
+  int inner_target = 10;      // inner edges left in a cluster, >= 0
+  double border_ratio = 0.1;  // border edges left, share of all, in (0, 1]
+  int min_border_edges = 10;  // ... but not fewer than this
+  int passes = 2;             // >= 1
+
+  // kBudget. Number of faces to stop at; 0 = faces_per_m2 x area of the mesh.
+  int target_faces = 0;
+  double faces_per_m2 = 1000;
+  // Collapses with a smaller rms error are made even below the budget [m].
+  double free_error_m = 0.0003;
+  // Collapses with a larger rms error are never made [m].
+  double max_error_m = 0.05;
+
+  // An inner vertex may collapse onto a border vertex (which stays put);
+  // otherwise rings of small triangles remain along dense borders.
+  bool collapse_to_border = true;
+  // Leave boundary edges of the mesh alone.
+  bool keep_mesh_boundary = false;
+
+  // Quadrics: share of the plane of the cluster against that of the face, in
+  // [0, 1] (1 draws vertices into the planes); weights of the squared edge
+  // lengths of the lines along borders; share of the mean face area that
+  // anchors vertices to themselves.
+  double cluster_plane_share = 0;
+  double cluster_border_weight = 0.05;
+  double mesh_boundary_weight = 1;
+  double point_share = 1e-3;
+
+  // Shape checks of a collapse, for each face that survives it: share of the
+  // present height that must remain; largest turn of the normal; largest angle
+  // to the plane of the cluster, or not larger than now; compactness
+  // 4 sqrt(3) area / (l1^2 + l2^2 + l3^2), or not smaller than now.
+  double min_height_share = 1e-3;
+  double max_turn_deg = 60;
+  double max_plane_deg = 75;
+  double min_compactness = 0.02;
+};
+
+struct SimplifyReport {
+  int faces_before = 0, faces_after = 0;
+  int border_edges_before = 0, border_edges_after = 0;
+  int collapses = 0;
+  double max_error_m = 0;  // largest rms error of a collapse that was made
+  MeshChecks checks_before, checks_after;
+  int flipped_before = 0, flipped_after = 0;  // CountFlippedFaces
+};
+
+struct SimplifyResult {
+  TriMesh mesh;
+  // Same ids; face_cluster and num_faces of the new faces. Planes, centroids,
+  // areas and rms remain those of the dense clusters: they rest on many more
+  // samples. Every cluster keeps at least one face.
+  PlanarPartition partition;
+  std::vector<PlaneCluster> refit;  // the same, fitted to the new faces
+  std::vector<int> vertex_birth;    // vertex of the input that became this one
+  SimplifyReport report;
+};
+
+// `mesh` must be manifold (SplitNonManifold of mesh/clean.h makes it so) and
+// `partition` must label every face. Manifold in, manifold out: components,
+// boundary loops and Euler number stay as they are. Throws OptionsError;
+// UnsolvableError if the mesh is not manifold.
+SimplifyResult SimplifyByPlanes(const TriMesh& mesh,
+                                const PlanarPartition& partition,
+                                const SimplifyOptions& options);
+
+// Area, centroid, rms and least-squares plane (oriented like the area of the
+// faces) of every cluster, by exact integrals over the faces. Clusters without
+// area get the plane of `partition`.
+std::vector<PlaneCluster> RefitClusters(const TriMesh& mesh,
+                                        const PlanarPartition& partition);
+
+}  // namespace facet

@@ -1,0 +1,82 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+//
+// Shape of triangles, and whether moving one corner is admissible (method,
+// Sec. 3.5). Internal to the simplification.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "mesh/simplify.h"
+
+namespace facet {
+
+// 4 sqrt(3) area / (l1^2 + l2^2 + l3^2): 1 for an equilateral triangle, 0 for a
+// degenerate one.
+inline double Compactness(const Eigen::Vector3d& p0,
+                          const Eigen::Vector3d& p1,
+                          const Eigen::Vector3d& p2) {
+  const double lengths = (p1 - p0).squaredNorm() + (p2 - p1).squaredNorm() +
+                         (p0 - p2).squaredNorm();
+  if (!(lengths > 0)) return 0;
+  const double area = 0.5 * (p1 - p0).cross(p2 - p0).norm();
+  return 6.928203230275509 * area / lengths;
+}
+
+struct ShapeLimits {
+  explicit ShapeLimits(const SimplifyOptions& options)
+      : min_height_share(options.min_height_share),
+        min_turn_cos(std::cos(options.max_turn_deg * M_PI / 180)),
+        min_plane_cos(std::cos(options.max_plane_deg * M_PI / 180)),
+        min_compactness(options.min_compactness) {}
+
+  double min_height_share, min_turn_cos, min_plane_cos, min_compactness;
+};
+
+// May corner `from` of the triangle (from, p2, p3), counter-clockwise, move to
+// `to`? `cluster_normal` has unit length. A face without a normal may become
+// anything that has one.
+inline bool MayMoveCorner(const Eigen::Vector3d& from,
+                          const Eigen::Vector3d& to,
+                          const Eigen::Vector3d& p2,
+                          const Eigen::Vector3d& p3,
+                          const Eigen::Vector3d& cluster_normal,
+                          const ShapeLimits& limits) {
+  const Eigen::Vector3d base = p3 - p2;
+  const Eigen::Vector3d old_cross = base.cross(from - p2);
+  const Eigen::Vector3d new_cross = base.cross(to - p2);
+  const double old_norm = old_cross.norm();
+  const double new_norm = new_cross.norm();
+  const double base_sq = base.squaredNorm();
+  const double lengths =
+      base_sq + (to - p2).squaredNorm() + (to - p3).squaredNorm();
+  // 2 sqrt(3) |cross| / lengths is the compactness.
+  const double new_compact = 3.4641016151377544 * new_norm / lengths;
+  if (!(new_compact > 1e-4)) return false;
+
+  const double new_plane_cos = new_cross.dot(cluster_normal) / new_norm;
+  if (!(old_norm > 1e-14)) {
+    return new_plane_cos >= limits.min_plane_cos &&
+           new_compact >= limits.min_compactness;
+  }
+  // Heights over the same base are as the areas; the new one is measured along
+  // the old normal's in-plane direction, so it is negative beyond the base.
+  const double turned = new_cross.dot(old_cross);
+  if (!(turned > limits.min_height_share * old_norm * old_norm)) return false;
+  if (turned < limits.min_turn_cos * new_norm * old_norm) return false;
+  if (new_plane_cos < limits.min_plane_cos &&
+      new_plane_cos * old_norm < old_cross.dot(cluster_normal)) {
+    return false;
+  }
+  if (new_compact < limits.min_compactness) {
+    const double old_lengths =
+        base_sq + (from - p2).squaredNorm() + (from - p3).squaredNorm();
+    if (new_compact < 3.4641016151377544 * old_norm / old_lengths) return false;
+  }
+  return true;
+}
+
+}  // namespace facet
