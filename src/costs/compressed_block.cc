@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <cmath>
 
-#include "glog/logging.h"
+#include <glog/logging.h>
 
 namespace facet {
 
