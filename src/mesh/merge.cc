@@ -27,9 +27,10 @@ void CheckOptions(const MergeOptions& o) {
         "min_sheet_deg in [0, 90)");
   }
   if (!(o.max_rms_m >= 0) || !(o.max_drift_factor >= 0) ||
-      o.island_max_neighbors < 0 || !(o.island_area_share >= 0) ||
-      !(o.island_area_m2 >= 0) || !(o.island_max_rms_m >= 0) ||
-      !(o.island_border_share >= 0) || !(o.island_border_share <= 1)) {
+      !(o.max_member_rms_m >= 0) || o.island_max_neighbors < 0 ||
+      !(o.island_area_share >= 0) || !(o.island_area_m2 >= 0) ||
+      !(o.island_max_rms_m >= 0) || !(o.island_border_share >= 0) ||
+      !(o.island_border_share <= 1)) {
     throw OptionsError(
         "merge: guards and island limits must not be negative, "
         "island_border_share at most 1");
@@ -56,11 +57,13 @@ class PlaneMerger {
               MergeReport* report)
       : mesh_(mesh),
         original_(partition.clusters.size()),
+        original_moments_(partition.clusters.size()),
         options_(options),
         report_(*report),
         graph_(mesh, partition) {
     for (size_t i = 0; i < original_.size(); ++i) {
       original_[i] = graph_.node(static_cast<int>(i)).fit.plane;
+      original_moments_[i] = graph_.node(static_cast<int>(i)).moments;
     }
     oriented_ = options.oriented_normals;
     if (oriented_ && graph_.inconsistent_share() > 0.05) {
@@ -189,16 +192,25 @@ class PlaneMerger {
   bool UnionIsFlat(int i, int j) const {
     const PlaneCluster fit = graph_.FitUnion(i, j);
     if (options_.max_rms_m > 0 && fit.rms > options_.max_rms_m) return false;
-    if (options_.max_drift_factor == 0) return true;
-    const double limit = options_.max_drift_factor * options_.max_normal_deg;
     for (int node : {i, j}) {
       for (int member : graph_.node(node).members) {
-        if (!NormalsAgree(original_[member], fit.plane, limit, oriented_)) {
-          return false;
-        }
+        if (!MemberFits(member, fit.plane)) return false;
       }
     }
     return true;
+  }
+
+  bool MemberFits(int member, const Plane& plane) const {
+    if (options_.max_drift_factor > 0 &&
+        !NormalsAgree(original_[member],
+                      plane,
+                      options_.max_drift_factor * options_.max_normal_deg,
+                      oriented_)) {
+      return false;
+    }
+    return options_.max_member_rms_m == 0 ||
+           RmsToPlane(original_moments_[member], plane) <=
+               options_.max_member_rms_m;
   }
 
   // The plane that node i is an island in, or -1.
@@ -234,6 +246,7 @@ class PlaneMerger {
 
   const TriMesh& mesh_;
   std::vector<Plane> original_;
+  std::vector<SurfaceMoments> original_moments_;
   const MergeOptions& options_;
   MergeReport& report_;
   PlaneGraph graph_;

@@ -37,6 +37,10 @@ struct MergeOptions {
   // The normal of every original cluster stays within this factor x eps_n of
   // the union's; 0 = off.
   double max_drift_factor = 2;
+  // Largest rms distance of any original cluster to the union's plane [m]; 0 =
+  // off. Keeps thin things (a magazine on a table), which eps_d lets through
+  // and which a large union outvotes.
+  double max_member_rms_m = 0.008;
 
   // Opposite normals never merge: a door has two sides. Where the mesh is not
   // consistently oriented (over 5 % of its inner edges) they do, with a
