@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include "util/parallel_for.h"
 
@@ -16,25 +17,39 @@ using Eigen::Vector3d;
 
 constexpr double kPi = 3.14159265358979323846;
 
-// The box along three axes that holds nearly all vertices, whatever a few
-// stray pieces of a large scan do.
+// The box along three axes that holds nearly all of the surface, whatever a few
+// stray pieces of a scan do.
 struct Extent {
   Vector3d low, high;
   Vector3d Center() const { return 0.5 * (low + high); }
 };
 
 Extent RobustExtent(const TriMesh& mesh, const Matrix3d& axes) {
-  constexpr size_t kLargeScan = 5000;
+  constexpr double kTail = 1.0 / 60;  // of the area, at every end
+  // Every vertex stands for the area around it, so that large faces reach to
+  // their corners and small ones do not outweigh them.
+  std::vector<double> area(mesh.NumVertices(), 0);
+  double total = 0;
+  for (size_t f = 0; f < mesh.NumFaces(); ++f) {
+    const double share = mesh.FaceArea(f);
+    for (int v : mesh.faces[f]) area[v] += share;
+    total += 3 * share;
+  }
+  std::vector<std::pair<double, double>> values(mesh.NumVertices());
   Extent extent;
-  std::vector<double> values(mesh.NumVertices());
-  const size_t tail = values.size() > kLargeScan ? values.size() / 60 : 0;
   for (int k = 0; k < 3; ++k) {
     for (size_t i = 0; i < values.size(); ++i) {
-      values[i] = axes.col(k).dot(mesh.vertices[i]);
+      values[i] = {axes.col(k).dot(mesh.vertices[i]), area[i]};
     }
     std::sort(values.begin(), values.end());
-    extent.low[k] = values[tail];
-    extent.high[k] = values[values.size() - 1 - tail];
+    const auto quantile = [&](auto begin, auto end) {
+      double sum = 0;
+      auto it = begin;
+      while (it + 1 != end && (sum += it->second) <= kTail * total) ++it;
+      return it->first;
+    };
+    extent.low[k] = quantile(values.begin(), values.end());
+    extent.high[k] = quantile(values.rbegin(), values.rend());
   }
   return extent;
 }
