@@ -199,8 +199,8 @@ void EvaluatePhotosAndPoses(const RgbdSequence& sequence,
   }
 }
 
-// Plane labels come with the model, or from simplified.ply of its run folder,
-// whose faces are those of the final mesh.
+// Plane labels come with the model, or with simplified.ply of its run folder:
+// the faces of mesh.obj may be in another order.
 void EvaluatePlanes(const TexturedMesh& model, ModelReport* report) {
   const fs::path folder = report->model;
   if (!fs::is_directory(folder) || !fs::exists(folder / "planes.json")) {
@@ -209,13 +209,13 @@ void EvaluatePlanes(const TexturedMesh& model, ModelReport* report) {
                "compared with the truth");
     return;
   }
-  std::vector<int> labels = model.face_plane;
-  if (labels.empty()) {
-    labels = ReadMesh((folder / "simplified.ply").string()).face_plane;
+  MeshFile labelled_file{model.mesh, model.face_plane};
+  if (labelled_file.face_plane.empty()) {
+    labelled_file = ReadMesh((folder / "simplified.ply").string());
   }
   const MeshFile truth = ReadMesh(FLAGS_true_mesh);
   const std::vector<NumberedPlane> true_planes = ReadPlanes(FLAGS_true_planes);
-  const LabelledMesh labelled{&model.mesh, &labels};
+  const LabelledMesh labelled{&labelled_file.mesh, &labelled_file.face_plane};
   const LabelledMesh labelled_truth{&truth.mesh, &truth.face_plane};
   PlaneMetricsOptions options;
   options.seed = FLAGS_seed;

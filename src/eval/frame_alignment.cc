@@ -148,7 +148,7 @@ bool Refine(const std::vector<ModelSample>& samples,
     *state = next;
     eq = after;
     ++*iterations;
-    if (length < 1e-5) break;  // 10 micrometres
+    if (length < 5e-5) break;  // 0.05 mm, 0.003 degrees
   }
   return eq.count >= kMinSamples;
 }

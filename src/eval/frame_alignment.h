@@ -25,7 +25,7 @@ namespace facet {
 struct AlignmentOptions {
   // One rendering each, Gaussian sigma [px].
   std::vector<double> blur_px = {2.0, 2.0, 0.8, 0.8, 0.8};
-  int max_iterations = 10;             // a rendering
+  int max_iterations = 15;             // a rendering
   double huber = 0.04;                 // of luma 0-1
   double max_depth_difference = 0.05;  // mask as in the metrics [m]
   // Beyond these the result does not count.
