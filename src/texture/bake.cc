@@ -8,6 +8,7 @@
 #include "rgbd/blur.h"
 #include "texture/bake_texels.h"
 #include "texture/fill_texture.h"
+#include "texture/rgb_sampler.h"
 #include "texture/visibility.h"
 #include "util/errors.h"
 #include "util/parallel_for.h"
@@ -18,7 +19,8 @@ namespace {
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
-// A bit a texel of each tile that a keyframe sees at all.
+// For each tile that a keyframe sees at all: a bit a texel by Test(), then a
+// bit a texel by MaySee().
 struct FrameBits {
   std::vector<uint32_t> tile;
   std::vector<uint32_t> first_word;
@@ -38,52 +40,6 @@ struct ColorSample {
 
 float Luma(const Vector3f& rgb) {
   return (0.299f * rgb.x() + 0.587f * rgb.y() + 0.114f * rgb.z()) / 255.0f;
-}
-
-Vector3f PixelAt(const cv::Mat& rgb, int x, int y) {
-  const uint8_t* p = rgb.ptr<uint8_t>(y) + 3 * x;
-  return {static_cast<float>(p[0]),
-          static_cast<float>(p[1]),
-          static_cast<float>(p[2])};
-}
-
-// u must lie within the pixel centres.
-Vector3f Bilinear(const cv::Mat& rgb, float u, float v) {
-  const int x = std::min(static_cast<int>(u), rgb.cols - 2);
-  const int y = std::min(static_cast<int>(v), rgb.rows - 2);
-  const float a = u - static_cast<float>(x), b = v - static_cast<float>(y);
-  const uint8_t* r0 = rgb.ptr<uint8_t>(y) + 3 * x;
-  const uint8_t* r1 = r0 + rgb.step[0];
-  const float w00 = (1 - a) * (1 - b), w10 = a * (1 - b), w01 = (1 - a) * b,
-              w11 = a * b;
-  Vector3f color;
-  for (int k = 0; k < 3; ++k) {
-    color[k] = w00 * r0[k] + w10 * r0[k + 3] + w01 * r1[k] + w11 * r1[k + 3];
-  }
-  return color;
-}
-
-void CatmullRomWeights(float t, float* w) {
-  w[0] = t * (-0.5f + t * (1 - 0.5f * t));
-  w[1] = 1 + t * t * (-2.5f + 1.5f * t);
-  w[2] = t * (0.5f + t * (2 - 1.5f * t));
-  w[3] = t * t * (-0.5f + 0.5f * t);
-}
-
-Vector3f Bicubic(const cv::Mat& rgb, float u, float v) {
-  const int x = static_cast<int>(u), y = static_cast<int>(v);
-  float wx[4], wy[4];
-  CatmullRomWeights(u - static_cast<float>(x), wx);
-  CatmullRomWeights(v - static_cast<float>(y), wy);
-  Vector3f color = Vector3f::Zero();
-  for (int j = 0; j < 4; ++j) {
-    const int row = std::clamp(y + j - 1, 0, rgb.rows - 1);
-    for (int i = 0; i < 4; ++i) {
-      const int col = std::clamp(x + i - 1, 0, rgb.cols - 1);
-      color += wy[j] * wx[i] * PixelAt(rgb, col, row);
-    }
-  }
-  return color;
 }
 
 // Sharpness of every keyframe relative to the median one.
@@ -147,6 +103,7 @@ class Baker {
     for (const BakeReport& part : tile_reports_) {
       total.texels += part.texels;
       total.seen += part.seen;
+      total.mild += part.mild;
       total.samples += part.samples;
       total.dropped += part.dropped;
     }
@@ -189,6 +146,10 @@ class Baker {
     }
   }
 
+  static size_t NumWords(const BakeTile& tile) {
+    return (tile.owned_end - tile.begin + 63) / 64;
+  }
+
   void LookFrom(size_t k, const std::vector<Ball>& balls) {
     const bool needs_depth =
         visibility_.test_sensor_depth || visibility_.test_depth_edges;
@@ -209,15 +170,18 @@ class Baker {
           normal.dot(view.center() - balls[t].center) < -balls[t].radius) {
         continue;
       }
-      words.assign((tile.owned_end - tile.begin + 63) / 64, 0);
+      const size_t num_words = NumWords(tile);
+      words.assign(2 * num_words, 0);
       bool any = false;
       for (uint32_t i = tile.begin; i < tile.owned_end; ++i) {
         if (chart.steep) normal = Normal(chart, i);
-        if (view.Test(texels_.p[i], texels_.q[i], normal) != Sight::kVisible) {
-          continue;
+        const Vector3f &p = texels_.p[i], &q = texels_.q[i];
+        size_t word = (i - tile.begin) / 64;
+        if (view.Test(p, q, normal) != Sight::kVisible) {
+          if (!options_.mild_fallback || !view.MaySee(p, q, normal)) continue;
+          word += num_words;
         }
-        const uint32_t bit = i - tile.begin;
-        words[bit / 64] |= uint64_t{1} << (bit % 64);
+        words[word] |= uint64_t{1} << ((i - tile.begin) % 64);
         any = true;
       }
       if (!any) continue;
@@ -253,6 +217,7 @@ class Baker {
   // All texels of a tile in one keyframe.
   void SampleView(const BakeTile& tile,
                   const TileView& view,
+                  const std::vector<uint64_t>& seen_well,
                   ColorSample* samples) const {
     const Pose& pose = poses_[view.keyframe];
     const Eigen::Matrix3f rotation = pose.RotationMatrix().cast<float>();
@@ -269,7 +234,9 @@ class Baker {
       ColorSample& sample = samples[i - tile.begin];
       sample = ColorSample();
       const uint32_t bit = texels_.source[i] - tile.begin;
-      if (!(view.words[bit / 64] >> (bit % 64) & 1)) continue;
+      const bool well = seen_well[bit / 64] >> (bit % 64) & 1;
+      const size_t word = bit / 64 + (well ? 0 : seen_well.size());
+      if (!(view.words[word] >> (bit % 64) & 1)) continue;
       const Vector3f y = rotation * texels_.q[i] + translation;
       if (!(y.z() > 0.01f)) continue;
       Vector2f u(static_cast<float>(camera_.fx) * y.x() / y.z() +
@@ -285,8 +252,8 @@ class Baker {
       if (chart.steep) normal = Normal(chart, i);
       const float cosine = normal.dot((center - texels_.q[i]).normalized());
       sample.rgb = options_.sampler == BakeSampler::kBilinear
-                       ? Bilinear(rgb, u.x(), u.y())
-                       : Bicubic(rgb, u.x(), u.y());
+                       ? BilinearRgb(rgb, u.x(), u.y())
+                       : BicubicRgb(rgb, u.x(), u.y());
       sample.weight =
           Weight(std::abs(cosine), y.z(), sharpness_[view.keyframe], u);
     }
@@ -298,9 +265,15 @@ class Baker {
     const size_t n = tile.end - tile.begin, owned = tile.owned_end - tile.begin;
     report.texels = owned;
     const std::vector<TileView>& views = tile_views_[t];
+    // Texels that any keyframe sees by the strict tests.
+    std::vector<uint64_t> seen_well(NumWords(tile), 0);
+    for (const TileView& view : views) {
+      for (size_t w = 0; w < seen_well.size(); ++w)
+        seen_well[w] |= view.words[w];
+    }
     std::vector<ColorSample> samples(n * views.size());
     for (size_t v = 0; v < views.size(); ++v) {
-      SampleView(tile, views[v], samples.data() + n * v);
+      SampleView(tile, views[v], seen_well, samples.data() + n * v);
       for (size_t i = 0; i < owned; ++i) {
         report.samples += samples[n * v + i].weight > 0;
       }
@@ -314,7 +287,9 @@ class Baker {
       if (!(mean[i].weight > 0)) continue;
       colors_[tile.begin + i] = mean[i].rgb;
       seen_[tile.begin + i] = 1;
-      report.seen += i < owned;
+      if (i >= owned) continue;
+      ++report.seen;
+      report.mild += !(seen_well[i / 64] >> (i % 64) & 1);
     }
   }
 

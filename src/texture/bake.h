@@ -41,6 +41,9 @@ struct BakeOptions {
   double border_feather_px = 40;  // width of the ramp f; 0 = none
   int robust_passes = 2;          // 0 = keep all samples
   double robust_luma = 0.10;      // largest |luma - mean|, intensities 0 to 1
+  // Texels that no keyframe sees by the tests of VisibilityOptions take colours
+  // from those that pass the milder FrameView::MaySee.
+  bool mild_fallback = true;
   BakeSampler sampler = BakeSampler::kBilinear;
   int ring_px = 4;      // gutter coloured from the images; the rest is copied
   bool inpaint = true;  // fill unseen texels; else they stay white
@@ -49,6 +52,7 @@ struct BakeOptions {
 struct BakeReport {
   size_t texels = 0;                 // in faces, without gutter
   size_t seen = 0;                   // of them coloured from images
+  size_t mild = 0;                   // of those by the mild fallback only
   size_t samples = 0;                // (texel, keyframe) pairs, without gutter
   size_t dropped = 0;                // of them by the robust pass
   double mean_views = 0;             // samples / seen

@@ -93,18 +93,23 @@ Sight FrameView::TestBall(const Ball& ball) const {
   return Sight::kVisible;
 }
 
-Sight FrameView::Test(const Vector3f& p,
-                      const Vector3f& q,
-                      const Vector3f& normal) const {
+bool FrameView::IsInRangeAndImage(const Vector3f& q, Sight* refusal) const {
   const Vector3f y = rotation_ * q + translation_;
   if (!(y.z() > static_cast<float>(options_.min_depth_m)) ||
       y.z() > static_cast<float>(options_.max_depth_m)) {
-    return Sight::kBehindOrFar;
+    *refusal = Sight::kBehindOrFar;
+    return false;
   }
   const Eigen::Vector2d u = color_.Project<double>(y.cast<double>());
-  if (!color_.Contains(u, options_.image_margin_px)) {
-    return Sight::kOutsideImage;
-  }
+  *refusal = Sight::kOutsideImage;
+  return color_.Contains(u, options_.image_margin_px);
+}
+
+Sight FrameView::Test(const Vector3f& p,
+                      const Vector3f& q,
+                      const Vector3f& normal) const {
+  Sight refusal;
+  if (!IsInRangeAndImage(q, &refusal)) return refusal;
   const Vector3f view = center_ - q;
   const float along = normal.dot(view);
   if (options_.test_angle &&
@@ -118,23 +123,51 @@ Sight FrameView::Test(const Vector3f& p,
   return Sight::kVisible;
 }
 
+bool FrameView::MaySee(const Vector3f& p,
+                       const Vector3f& q,
+                       const Vector3f& normal) const {
+  constexpr float kMinCos = 0.087f;  // 85 degrees
+  constexpr float kFreeSpace = 0.1f;
+  Sight refusal;
+  if (!IsInRangeAndImage(q, &refusal)) return false;
+  const Vector3f view = center_ - q;
+  const float along = normal.dot(view);
+  if (along <= 0 || along * along < kMinCos * kMinCos * view.squaredNorm()) {
+    return false;
+  }
+  float z = 0;
+  int col = -1, row = -1;
+  const float measured = MeasuredDepth(q, &z, &col, &row);
+  if (measured > 0 && measured < z - kFreeSpace) return false;
+  return !options_.test_occlusion || !IsOccluded(p);
+}
+
+float FrameView::MeasuredDepth(const Vector3f& q,
+                               float* z,
+                               int* column,
+                               int* row) const {
+  const Vector3f y = depth_rotation_ * q + depth_translation_;
+  *z = y.z();
+  *column = *row = -1;
+  if (!(y.z() > 0)) return 0;
+  const Eigen::Vector2d u = depth_camera_.Project<double>(y.cast<double>());
+  // Compared as doubles: far outside, an int would overflow.
+  if (!(u.x() > -0.5 && u.y() > -0.5 && u.x() < depth_camera_.width - 0.5 &&
+        u.y() < depth_camera_.height - 0.5)) {
+    return 0;
+  }
+  *column = std::min(static_cast<int>(u.x() + 0.5), depth_camera_.width - 1);
+  *row = std::min(static_cast<int>(u.y() + 0.5), depth_camera_.height - 1);
+  return depth_.empty() ? 0 : depth_.at<float>(*row, *column);
+}
+
 Sight FrameView::TestSensorDepth(const Vector3f& q) const {
   if (!options_.test_sensor_depth && !options_.test_depth_edges) {
     return Sight::kVisible;
   }
-  const Vector3f y = depth_rotation_ * q + depth_translation_;
-  float measured = 0;
+  float z = 0;
   int col = -1, row = -1;
-  if (y.z() > 0) {
-    const Eigen::Vector2d u = depth_camera_.Project<double>(y.cast<double>());
-    // Compared as doubles: far outside, an int would overflow.
-    if (u.x() > -0.5 && u.y() > -0.5 && u.x() < depth_camera_.width - 0.5 &&
-        u.y() < depth_camera_.height - 0.5) {
-      col = std::min(static_cast<int>(u.x() + 0.5), depth_camera_.width - 1);
-      row = std::min(static_cast<int>(u.y() + 0.5), depth_camera_.height - 1);
-      if (!depth_.empty()) measured = depth_.at<float>(row, col);
-    }
-  }
+  const float measured = MeasuredDepth(q, &z, &col, &row);
   const bool missing = !(measured > 0);
   if (options_.test_sensor_depth && missing && !options_.allow_missing_depth) {
     return Sight::kDepthMissing;
@@ -145,8 +178,8 @@ Sight FrameView::TestSensorDepth(const Vector3f& q) const {
   }
   if (options_.test_sensor_depth && !missing) {
     const double tolerance =
-        std::max(options_.min_depth_tolerance_m, 3 * DepthSigma(y.z()) + 0.02);
-    if (std::abs(measured - y.z()) > tolerance) return Sight::kDepthDisagrees;
+        std::max(options_.min_depth_tolerance_m, 3 * DepthSigma(z) + 0.02);
+    if (std::abs(measured - z) > tolerance) return Sight::kDepthDisagrees;
   }
   return Sight::kVisible;
 }

@@ -55,6 +55,14 @@ class FrameView {
              const Eigen::Vector3f& q,
              const Eigen::Vector3f& normal) const;
 
+  // A milder verdict, for points that no keyframe sees by Test(): inside the
+  // range and the image, not occluded by the mesh, seen at less than 85
+  // degrees, and no surface measured more than 10 cm before it. Missing depth
+  // and depth edges do not matter. Implied by Test() with its default options.
+  bool MaySee(const Eigen::Vector3f& p,
+              const Eigen::Vector3f& q,
+              const Eigen::Vector3f& normal) const;
+
   // The verdict on all points q of a ball, if it is the same one without
   // looking closer (kBehindOrFar or kOutsideImage); else kVisible.
   Sight TestBall(const Ball& ball) const;
@@ -64,6 +72,13 @@ class FrameView {
  private:
   bool IsOccluded(const Eigen::Vector3f& p) const;
   Sight TestSensorDepth(const Eigen::Vector3f& q) const;
+  bool IsInRangeAndImage(const Eigen::Vector3f& q, Sight* refusal) const;
+  // Sensor depth at a point [m], 0 = missing; z there, and the pixel (-1 =
+  // outside the depth image).
+  float MeasuredDepth(const Eigen::Vector3f& q,
+                      float* z,
+                      int* column,
+                      int* row) const;
 
   const RayScene& scene_;
   VisibilityOptions options_;
