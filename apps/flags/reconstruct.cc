@@ -1,0 +1,358 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+#include "apps/flags/reconstruct.h"
+
+#include <gflags/gflags.h>
+
+#include "apps/flags/keyframes.h"
+#include "apps/flags/sequence.h"
+#include "util/errors.h"
+
+using facet::AtlasOptions;
+using facet::BakeOptions;
+using facet::EnergyWeights;
+using facet::GeometryOptions;
+using facet::MergeOptions;
+using facet::PartitionOptions;
+using facet::PhotometricOptions;
+using facet::SimplifyOptions;
+using facet::SolverConfig;
+using facet::VisibilityOptions;
+
+// Run
+DEFINE_string(mesh, "", "dense triangle mesh of the scan, PLY or OBJ [m]");
+DEFINE_string(output, "", "run folder to write");
+DEFINE_bool(overwrite, false, "write into a run folder that is not empty");
+DEFINE_string(profile,
+              "default",
+              "default: facet's own settings; paper: the published method to "
+              "the letter. Flags on the command line win");
+DEFINE_string(from_stage,
+              "partition",
+              "first stage to run, earlier results are read from RUN/stages: "
+              "partition, simplify, keyframes, photometric, geometry, export");
+DEFINE_string(to_stage, "export", "last stage to run");
+DEFINE_int32(threads, 0, "threads to use, 0 = one a core");
+DEFINE_uint64(seed, 0, "recorded; nothing in the pipeline is random today");
+DEFINE_bool(previews, true, "draw previews/*.png");
+
+// Partition and planes
+DEFINE_int32(partition_clusters,
+             PartitionOptions().target_clusters,
+             "clusters before merging");
+DEFINE_double(partition_max_rms,
+              PartitionOptions().max_rms_m,
+              "stop merging faces at this rms height of a cluster [m], 0 = off");
+DEFINE_bool(merge, MergeOptions().merge_planes, "merge adjacent planes");
+DEFINE_double(merge_max_normal_deg,
+              MergeOptions().max_normal_deg,
+              "largest angle between merged planes (paper: 8)");
+DEFINE_double(merge_max_distance,
+              MergeOptions().max_distance_m,
+              "largest mean distance to each other's plane [m] (paper: 0.05)");
+DEFINE_double(merge_min_sheet_deg,
+              MergeOptions().min_sheet_deg,
+              "angle of centroid direction and normal above which two planes "
+              "lie side by side (paper: 80)");
+DEFINE_double(merge_max_rms,
+              MergeOptions().max_rms_m,
+              "largest rms height of a merged plane [m], 0 = off");
+DEFINE_double(merge_max_drift,
+              MergeOptions().max_drift_factor,
+              "a cluster stays within this factor x merge_max_normal_deg of "
+              "its plane, 0 = off");
+
+// Simplification
+DEFINE_string(simplify_stop,
+              "budget",
+              "budget: cheapest collapse first down to the face budget; counts: "
+              "edge counts as published");
+DEFINE_int32(simplify_faces,
+             SimplifyOptions().target_faces,
+             "face budget, 0 = by simplify_faces_per_m2");
+DEFINE_double(simplify_faces_per_m2,
+              SimplifyOptions().faces_per_m2,
+              "face budget by surface");
+DEFINE_int32(simplify_inner_target,
+             SimplifyOptions().inner_target,
+             "counts: inner edges left in a cluster");
+DEFINE_double(simplify_border_ratio,
+              SimplifyOptions().border_ratio,
+              "counts: share of the border edges left");
+DEFINE_int32(simplify_passes, SimplifyOptions().passes, "counts: passes");
+DEFINE_string(plane_init,
+              "dense",
+              "initial planes: dense (clusters of the dense mesh) or "
+              "simplified (refitted to the light mesh)");
+
+// Texels and visibility
+DEFINE_double(texel_size,
+              AtlasOptions().texel_size_m,
+              "spacing of texels [m] (paper: 0.0025)");
+DEFINE_int32(atlas_page_size, AtlasOptions().page_size, "largest page [px]");
+DEFINE_int32(texel_stride,
+             PhotometricOptions().stride,
+             "every stride-th texel takes part in the optimisation; 0 = by "
+             "max_observations (paper: 1)");
+DEFINE_uint64(max_observations,
+              PhotometricOptions().max_observations,
+              "observations to stay below by choosing the stride");
+DEFINE_bool(test_occlusion,
+            VisibilityOptions().test_occlusion,
+            "texels must not be hidden by the mesh");
+DEFINE_bool(test_sensor_depth,
+            VisibilityOptions().test_sensor_depth,
+            "texels must agree with the sensor depth");
+DEFINE_bool(allow_missing_depth,
+            VisibilityOptions().allow_missing_depth,
+            "texels without sensor depth pass its test");
+DEFINE_bool(test_angle,
+            VisibilityOptions().test_angle,
+            "texels must not be seen at a grazing angle");
+DEFINE_double(max_angle_deg,
+              VisibilityOptions().max_angle_deg,
+              "largest angle of view and normal");
+DEFINE_bool(test_depth_edges,
+            VisibilityOptions().test_depth_edges,
+            "texels must not lie beside jumps of the sensor depth");
+DEFINE_double(image_margin,
+              VisibilityOptions().image_margin_px,
+              "texels keep away from the image border [px]");
+DEFINE_int32(min_views,
+             VisibilityOptions().min_views,
+             "texels seen by fewer keyframes take no part");
+
+// Optimisation
+DEFINE_string(schedule,
+              PhotometricOptions().schedule,
+              "what is solved when: N x [phase; phase], a phase is a sum of C "
+              "(colours), Phi (planes), T (poses), F (warps); the paper is "
+              "10x[C; Phi; T+F]");
+DEFINE_double(stop_decrease,
+              PhotometricOptions().stop.relative_decrease,
+              "a group of rounds ends when two rounds lower the energy by a "
+              "smaller share, 0 = never");
+DEFINE_double(smoothing,
+              PhotometricOptions().smoothing_sigma_px,
+              "Gaussian on the grey images [px]");
+DEFINE_int32(warp_columns,
+             PhotometricOptions().warp_columns,
+             "control vertices of the image warp across (paper: 20)");
+DEFINE_int32(warp_rows,
+             PhotometricOptions().warp_rows,
+             "control vertices of the image warp down (paper: 16)");
+DEFINE_double(lambda2,
+              EnergyWeights().lambda2,
+              "weight of the warp's size E_s (paper: 0.1)");
+DEFINE_string(gauge,
+              "prior",
+              "what holds the model in place: prior (on every pose) or none");
+DEFINE_double(gauge_sigma_mm, 10, "prior: standard deviation of a camera [mm]");
+DEFINE_double(gauge_sigma_deg, 0.3, "prior: standard deviation of a rotation");
+DEFINE_string(plane,
+              "anchored",
+              "plane parameters: anchored (S2 x R about the centroid) or raw4 "
+              "(four free numbers, normalised afterwards; the paper)");
+DEFINE_int32(pose_iterations,
+             SolverConfig().max_pose_iterations,
+             "iterations of a pose or warp solve");
+DEFINE_int32(plane_iterations,
+             SolverConfig().max_plane_iterations,
+             "iterations of a plane solve");
+DEFINE_int32(joint_iterations,
+             SolverConfig().max_joint_iterations,
+             "iterations of a joint solve");
+
+// Geometry and colours
+DEFINE_double(lambda3, GeometryOptions().lambda3,
+              "weight of the mesh's smoothness (paper: 1)");
+DEFINE_int32(geometry_iterations,
+             GeometryOptions().iterations,
+             "projections onto the planes (paper: 1)");
+DEFINE_string(geometry_freedom,
+              "band",
+              "band: distances that look like shape stay; none: everything is "
+              "drawn to its plane (paper)");
+DEFINE_double(geometry_band,
+              GeometryOptions().band_m,
+              "band: distances below it are noise [m]");
+DEFINE_double(bake_angle_power, BakeOptions().angle_power,
+              "final colours: power of cos(viewing angle)");
+DEFINE_double(bake_depth_power, BakeOptions().depth_power,
+              "final colours: power of 1/depth");
+DEFINE_double(bake_sharpness_power,
+              BakeOptions().sharpness_power,
+              "final colours: power of the image's sharpness");
+DEFINE_double(bake_best_view_power,
+              BakeOptions().best_view_power,
+              "final colours: power of the whole weight; large = best view");
+DEFINE_int32(bake_robust_passes, BakeOptions().robust_passes,
+             "final colours: passes that drop outliers");
+DEFINE_double(bake_robust_luma, BakeOptions().robust_luma,
+              "final colours: an outlier differs by more (0-1)");
+DEFINE_string(bake_sampler, "bilinear", "final colours: bilinear or bicubic");
+
+namespace facet {
+namespace {
+
+// The position of `value` among `choices`; throws listing them.
+int Choose(const std::string& flag,
+           const std::string& value,
+           const std::vector<std::string>& choices) {
+  std::string list;
+  for (size_t i = 0; i < choices.size(); ++i) {
+    if (value == choices[i]) return static_cast<int>(i);
+    list += (i > 0 ? ", " : "") + choices[i];
+  }
+  throw OptionsError("--" + flag + "=" + value + " is not possible: use " +
+                     list);
+}
+
+void Require(bool holds, const std::string& sentence) {
+  if (!holds) throw OptionsError(sentence);
+}
+
+void MeshOptions(ReconstructOptions* o) {
+  o->partition.target_clusters = FLAGS_partition_clusters;
+  o->partition.max_rms_m = FLAGS_partition_max_rms;
+  o->merge.merge_planes = FLAGS_merge;
+  o->merge.max_normal_deg = FLAGS_merge_max_normal_deg;
+  o->merge.max_distance_m = FLAGS_merge_max_distance;
+  o->merge.min_sheet_deg = FLAGS_merge_min_sheet_deg;
+  o->merge.max_rms_m = FLAGS_merge_max_rms;
+  o->merge.max_drift_factor = FLAGS_merge_max_drift;
+  o->simplify.stop =
+      Choose("simplify_stop", FLAGS_simplify_stop, {"budget", "counts"}) == 0
+          ? SimplifyStop::kBudget
+          : SimplifyStop::kCounts;
+  o->simplify.target_faces = FLAGS_simplify_faces;
+  o->simplify.faces_per_m2 = FLAGS_simplify_faces_per_m2;
+  o->simplify.inner_target = FLAGS_simplify_inner_target;
+  o->simplify.border_ratio = FLAGS_simplify_border_ratio;
+  o->simplify.passes = FLAGS_simplify_passes;
+  o->plane_init =
+      Choose("plane_init", FLAGS_plane_init, {"dense", "simplified"}) == 0
+          ? PlaneInit::kDense
+          : PlaneInit::kSimplified;
+}
+
+void TextureOptions(ReconstructOptions* o) {
+  Require(FLAGS_texel_size >= 1e-4 && FLAGS_texel_size <= 0.1,
+          "--texel_size must be between 0.0001 and 0.1 m");
+  Require(FLAGS_texel_stride >= 0, "--texel_stride must not be negative");
+  Require(FLAGS_max_observations > 0, "--max_observations must be positive");
+  o->atlas.texel_size_m = FLAGS_texel_size;
+  o->atlas.page_size = FLAGS_atlas_page_size;
+  o->photometric.stride = FLAGS_texel_stride;
+  o->photometric.max_observations = FLAGS_max_observations;
+  VisibilityOptions& v = o->visibility;
+  v.min_depth_m = o->sequence.min_depth_m;
+  v.max_depth_m = o->sequence.max_depth_m;
+  v.test_occlusion = FLAGS_test_occlusion;
+  v.test_sensor_depth = FLAGS_test_sensor_depth;
+  v.allow_missing_depth = FLAGS_allow_missing_depth;
+  v.test_angle = FLAGS_test_angle;
+  v.max_angle_deg = FLAGS_max_angle_deg;
+  v.test_depth_edges = FLAGS_test_depth_edges;
+  v.image_margin_px = FLAGS_image_margin;
+  v.min_views = FLAGS_min_views;
+  Require(v.min_views >= 2,
+          "--min_views must be at least 2: one view has no residual");
+  BakeOptions& b = o->bake;
+  b.angle_power = FLAGS_bake_angle_power;
+  b.depth_power = FLAGS_bake_depth_power;
+  b.sharpness_power = FLAGS_bake_sharpness_power;
+  b.best_view_power = FLAGS_bake_best_view_power;
+  b.robust_passes = FLAGS_bake_robust_passes;
+  b.robust_luma = FLAGS_bake_robust_luma;
+  b.sampler = Choose("bake_sampler", FLAGS_bake_sampler,
+                     {"bilinear", "bicubic"}) == 0
+                  ? BakeSampler::kBilinear
+                  : BakeSampler::kBicubic;
+}
+
+void SolverOptions(ReconstructOptions* o) {
+  PhotometricOptions& p = o->photometric;
+  p.schedule = FLAGS_schedule;
+  p.stop.relative_decrease = FLAGS_stop_decrease;
+  p.smoothing_sigma_px = FLAGS_smoothing;
+  p.warp_columns = FLAGS_warp_columns;
+  p.warp_rows = FLAGS_warp_rows;
+  Require(p.warp_columns >= 2 && p.warp_rows >= 2,
+          "--warp_columns and --warp_rows must be at least 2");
+  Require(FLAGS_lambda2 > 0, "--lambda2 must be positive");
+  p.weights.lambda2 = FLAGS_lambda2;
+  p.weights.pose_prior = Choose("gauge", FLAGS_gauge, {"prior", "none"}) == 0;
+  Require(FLAGS_gauge_sigma_mm > 0 && FLAGS_gauge_sigma_deg > 0,
+          "--gauge_sigma_mm and --gauge_sigma_deg must be positive");
+  p.weights.prior.translation_m = 1e-3 * FLAGS_gauge_sigma_mm;
+  p.weights.prior.rotation_rad =
+      FLAGS_gauge_sigma_deg * 3.14159265358979323846 / 180;
+  p.solver.plane_step =
+      Choose("plane", FLAGS_plane, {"anchored", "raw4"}) == 0
+          ? PlaneStep::kAnchored
+          : PlaneStep::kRaw4;
+  Require(FLAGS_pose_iterations > 0 && FLAGS_plane_iterations > 0 &&
+              FLAGS_joint_iterations > 0,
+          "--pose_iterations, --plane_iterations and --joint_iterations must "
+          "be positive");
+  p.solver.max_pose_iterations = FLAGS_pose_iterations;
+  p.solver.max_plane_iterations = FLAGS_plane_iterations;
+  p.solver.max_joint_iterations = FLAGS_joint_iterations;
+  o->geometry.lambda3 = FLAGS_lambda3;
+  o->geometry.iterations = FLAGS_geometry_iterations;
+  o->geometry.band_m = FLAGS_geometry_band;
+  o->geometry.freedom =
+      Choose("geometry_freedom", FLAGS_geometry_freedom, {"band", "none"}) == 0
+          ? PlaneFreedom::kBand
+          : PlaneFreedom::kNone;
+}
+
+}  // namespace
+
+ReconstructOptions ReconstructOptionsFromFlags() {
+  ReconstructOptions o;
+  Require(!FLAGS_mesh.empty(), "--mesh is missing: give the dense mesh");
+  Require(!FLAGS_output.empty(), "--output is missing: give the run folder");
+  Require(!FLAGS_sequence.empty(),
+          "--sequence is missing: give the folder of the scan");
+  o.sequence_path = FLAGS_sequence;
+  o.mesh_path = FLAGS_mesh;
+  o.output_path = FLAGS_output;
+  o.overwrite = FLAGS_overwrite;
+  o.from_stage = ParseStage("from_stage", FLAGS_from_stage);
+  o.to_stage = ParseStage("to_stage", FLAGS_to_stage);
+  o.seed = FLAGS_seed;
+  o.previews = FLAGS_previews;
+  o.flags_text = gflags::CommandlineFlagsIntoString();
+  o.sequence = SequenceOptionsFromFlags();
+  o.keyframes = KeyframeOptionsFromFlags();
+  MeshOptions(&o);
+  TextureOptions(&o);
+  SolverOptions(&o);
+  return o;
+}
+
+std::string ProfileFlags(const std::string& name) {
+  if (Choose("profile", name, {"default", "paper"}) == 0) return "";
+  // What the paper says, in the order of its sections (docs/cli.md).
+  return "--simplify_stop=counts\n"
+         "--merge_max_rms=0\n"
+         "--merge_max_drift=0\n"
+         "--plane_init=simplified\n"
+         "--schedule=10x[C; Phi; T+F]\n"
+         "--stop_decrease=0\n"
+         "--smoothing=0\n"
+         "--gauge=none\n"
+         "--plane=raw4\n"
+         "--lambda2=0.1\n"
+         "--geometry_iterations=1\n"
+         "--geometry_freedom=none\n"
+         "--bake_angle_power=0\n"
+         "--bake_depth_power=0\n"
+         "--bake_sharpness_power=0\n"
+         "--bake_best_view_power=1\n"
+         "--bake_robust_passes=0\n";
+}
+
+}  // namespace facet

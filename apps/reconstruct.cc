@@ -1,0 +1,46 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+//
+// facet-reconstruct: an RGB-D scan and its dense mesh in, a light textured mesh
+// of planes out.
+#include <gflags/gflags.h>
+
+#include "apps/flags/reconstruct.h"
+#include "apps/init_app.h"
+#include "pipeline/reconstruct.h"
+#include "pipeline/stage_clock.h"
+#include "util/parallel_for.h"
+#include "util/resources.h"
+
+DECLARE_int32(threads);
+
+namespace {
+
+int Main() {
+  facet::SetNumThreads(FLAGS_threads);
+  const facet::Stopwatch watch;
+  const facet::ReconstructOptions options =
+      facet::ReconstructOptionsFromFlags();
+  const nlohmann::json report = facet::Reconstruct(options);
+  char line[300];
+  std::snprintf(line, sizeof(line), "done in %.1f s (%.1f CPU s): %s/report.json",
+                watch.WallSeconds(), watch.CpuSecondsSince(),
+                options.output_path.c_str());
+  facet::PrintLine(line);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const facet::AppDescription description = {
+      "Turns an RGB-D scan and its dense mesh into a light, textured mesh of "
+      "planes.\n  facet-reconstruct --sequence=SCAN --mesh=DENSE.ply "
+      "--output=RUN",
+      [](int n, char** arguments) {
+        const std::string profile =
+            facet::RawFlagValue(n, arguments, "profile");
+        return facet::ProfileFlags(profile.empty() ? "default" : profile);
+      }};
+  return facet::RunApp(argc, argv, description, Main);
+}

@@ -1,0 +1,136 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+#include "pipeline/config.h"
+
+#include <filesystem>
+
+namespace facet {
+namespace {
+
+using nlohmann::json;
+
+// An input that was replaced since is noticed by its size.
+json InputStamp(const std::string& path) {
+  std::error_code ignored;
+  const auto size = std::filesystem::is_regular_file(path, ignored)
+                        ? std::filesystem::file_size(path, ignored)
+                        : 0;
+  return {{"path", path}, {"bytes", size}};
+}
+
+json PartitionSettings(const ReconstructOptions& o) {
+  return {{"mesh", InputStamp(o.mesh_path)},
+          {"weld_tolerance_m", o.clean.weld_tolerance_m},
+          {"min_component_faces", o.clean.min_component_faces},
+          {"target_clusters", o.partition.target_clusters},
+          {"max_rms_m", o.partition.max_rms_m},
+          {"energy", static_cast<int>(o.partition.energy.kind)},
+          {"alpha", o.partition.energy.alpha},
+          {"tau", o.partition.energy.tau},
+          {"swap_borders", o.partition.swap_borders},
+          {"merge_planes", o.merge.merge_planes},
+          {"max_normal_deg", o.merge.max_normal_deg},
+          {"max_distance_m", o.merge.max_distance_m},
+          {"min_sheet_deg", o.merge.min_sheet_deg},
+          {"merge_max_rms_m", o.merge.max_rms_m},
+          {"max_drift_factor", o.merge.max_drift_factor},
+          {"absorb_islands", o.merge.absorb_islands}};
+}
+
+json SimplifySettings(const ReconstructOptions& o) {
+  return {{"stop", static_cast<int>(o.simplify.stop)},
+          {"inner_target", o.simplify.inner_target},
+          {"border_ratio", o.simplify.border_ratio},
+          {"passes", o.simplify.passes},
+          {"target_faces", o.simplify.target_faces},
+          {"faces_per_m2", o.simplify.faces_per_m2},
+          {"free_error_m", o.simplify.free_error_m},
+          {"max_error_m", o.simplify.max_error_m},
+          {"collapse_to_border", o.simplify.collapse_to_border},
+          {"keep_mesh_boundary", o.simplify.keep_mesh_boundary}};
+}
+
+json KeyframeSettings(const ReconstructOptions& o) {
+  return {{"sequence", o.sequence_path},
+          {"pose_camera", static_cast<int>(o.sequence.pose_camera)},
+          {"extrinsic_direction",
+           static_cast<int>(o.sequence.extrinsic_direction)},
+          {"min_depth_m", o.sequence.min_depth_m},
+          {"max_depth_m", o.sequence.max_depth_m},
+          {"window", o.keyframes.window},
+          {"holdout_stride", o.keyframes.holdout_stride},
+          {"holdout_offset", o.keyframes.holdout_offset}};
+}
+
+json PhotometricSettings(const ReconstructOptions& o) {
+  const VisibilityOptions& v = o.visibility;
+  const PhotometricOptions& p = o.photometric;
+  return {{"plane_init", static_cast<int>(o.plane_init)},
+          {"texel_size_m", o.atlas.texel_size_m},
+          {"stride", p.stride},
+          {"max_observations", p.max_observations},
+          {"smoothing_sigma_px", p.smoothing_sigma_px},
+          {"warp_columns", p.warp_columns},
+          {"warp_rows", p.warp_rows},
+          {"schedule", p.schedule},
+          {"stop_relative_decrease", p.stop.relative_decrease},
+          {"max_plane_iterations", p.solver.max_plane_iterations},
+          {"max_pose_iterations", p.solver.max_pose_iterations},
+          {"max_joint_iterations", p.solver.max_joint_iterations},
+          {"plane_step", static_cast<int>(p.solver.plane_step)},
+          {"lambda2", p.weights.lambda2},
+          {"pose_prior", p.weights.pose_prior},
+          {"prior_rotation_rad", p.weights.prior.rotation_rad},
+          {"prior_translation_m", p.weights.prior.translation_m},
+          {"prior_intensity", p.weights.prior.intensity},
+          {"image_margin_px", v.image_margin_px},
+          {"test_occlusion", v.test_occlusion},
+          {"test_sensor_depth", v.test_sensor_depth},
+          {"min_depth_tolerance_m", v.min_depth_tolerance_m},
+          {"allow_missing_depth", v.allow_missing_depth},
+          {"test_angle", v.test_angle},
+          {"max_angle_deg", v.max_angle_deg},
+          {"test_depth_edges", v.test_depth_edges},
+          {"min_views", v.min_views}};
+}
+
+json GeometrySettings(const ReconstructOptions& o) {
+  return {{"lambda3", o.geometry.lambda3},
+          {"iterations", o.geometry.iterations},
+          {"max_move_m", o.geometry.max_move_m}};
+}
+
+json ExportSettings(const ReconstructOptions& o) {
+  return {{"page_size", o.atlas.page_size},
+          {"gutter_px", o.atlas.gutter_px},
+          {"angle_power", o.bake.angle_power},
+          {"depth_power", o.bake.depth_power},
+          {"sharpness_power", o.bake.sharpness_power},
+          {"best_view_power", o.bake.best_view_power},
+          {"robust_passes", o.bake.robust_passes},
+          {"robust_luma", o.bake.robust_luma},
+          {"sampler", static_cast<int>(o.bake.sampler)},
+          {"inpaint", o.bake.inpaint}};
+}
+
+}  // namespace
+
+json StageSettings(const ReconstructOptions& options, Stage stage) {
+  switch (stage) {
+    case Stage::kPartition:
+      return PartitionSettings(options);
+    case Stage::kSimplify:
+      return SimplifySettings(options);
+    case Stage::kKeyframes:
+      return KeyframeSettings(options);
+    case Stage::kPhotometric:
+      return PhotometricSettings(options);
+    case Stage::kGeometry:
+      return GeometrySettings(options);
+    case Stage::kExport:
+      return ExportSettings(options);
+  }
+  return {};
+}
+
+}  // namespace facet

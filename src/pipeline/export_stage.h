@@ -1,0 +1,37 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+//
+// The last stage: final colours and all files of the run folder.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "pipeline/artefacts.h"
+#include "pipeline/config.h"
+#include "texture/atlas.h"
+#include "texture/keyframe_images.h"
+
+namespace facet {
+
+// Everything the earlier stages found.
+struct ExportInput {
+  const RgbdSequence& sequence;
+  const MeshArtefact& dense;
+  const MeshArtefact& simplified;
+  const std::vector<int>& keyframes;
+  const std::vector<Pose>& initial_cam_from_world;  // colour, a keyframe
+  const std::vector<Plane>& initial_planes;
+  const PhotometricArtefact& photometric;
+  const TriMesh& final_mesh;
+  const Atlas& atlas;
+  const KeyframeImages& images;
+};
+
+// Writes mesh.obj, mesh.mtl, texture_*.png, mesh.glb, partition.ply,
+// simplified.ply, planes.json, poses.txt, previews/*.png. Returns the stage's
+// part of report.json.
+nlohmann::json ExportRun(const ReconstructOptions& options,
+                         const ExportInput& input);
+
+}  // namespace facet

@@ -1,0 +1,84 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+#include "pipeline/previews.h"
+
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "util/atomic_file.h"
+#include "util/errors.h"
+
+namespace facet {
+namespace {
+
+void Draw(const std::string& dir,
+          const std::string& name,
+          const std::vector<PreviewView>& views,
+          const TriMesh& mesh,
+          const SurfaceColor& color,
+          const DrawOptions& options) {
+  const RayScene scene(mesh);
+  for (const PreviewView& view : views) {
+    WritePng(dir + "/" + name + "_" + view.name + ".png",
+             DrawView(SampleView(scene, mesh, view), mesh, color, options));
+  }
+}
+
+}  // namespace
+
+void WritePng(const std::string& path, const Picture& picture) {
+  const cv::Mat rgb(picture.height, picture.width, CV_8UC3,
+                    const_cast<uint8_t*>(picture.rgb.data()));
+  cv::Mat bgr;
+  cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
+  WriteFileAtomically(path, [&](const std::string& temporary_path) {
+    if (!cv::imwrite(temporary_path, bgr)) {
+      throw InputError("cannot write " + path);
+    }
+  });
+}
+
+void DrawInput(const std::string& dir,
+               const std::vector<PreviewView>& views,
+               const TriMesh& mesh) {
+  DrawOptions options;
+  options.smooth_normals = true;
+  Draw(dir, "input", views, mesh, UniformColor({0.78f, 0.78f, 0.8f}), options);
+  if (!mesh.vertex_colors.empty()) {
+    options.shade = false;
+    Draw(dir, "input_color", views, mesh, VertexColors(mesh), options);
+  }
+}
+
+void DrawPlanes(const std::string& dir,
+                const std::vector<PreviewView>& views,
+                const TriMesh& mesh,
+                const std::vector<int>& face_plane) {
+  Draw(dir, "planes", views, mesh, PlaneColors(face_plane), DrawOptions());
+}
+
+void DrawWireframe(const std::string& dir,
+                   const std::vector<PreviewView>& views,
+                   const TriMesh& mesh,
+                   const std::vector<int>& face_plane) {
+  DrawOptions options;
+  options.wireframe_px = 1.0;
+  Draw(dir, "wireframe", views, mesh, PlaneColors(face_plane), options);
+}
+
+void DrawTextured(const std::string& dir,
+                  const std::string& name,
+                  const std::vector<PreviewView>& views,
+                  const TexturedMesh& model) {
+  DrawOptions options;
+  options.shade = false;
+  Draw(dir, name, views, model.mesh,
+       [&](int face, double u, double v) -> Eigen::Vector3f {
+         return ColorAt(model, face, static_cast<float>(u),
+                        static_cast<float>(v)) /
+                255.0f;
+       },
+       options);
+}
+
+}  // namespace facet

@@ -1,0 +1,45 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+//
+// The pictures of a run: input, planes, light mesh, texture before and after,
+// from three views (render/preview_views.h).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mesh/planar_partition.h"
+#include "mesh/tri_mesh.h"
+#include "render/preview_views.h"
+#include "texture/textured_mesh.h"
+
+namespace facet {
+
+// Writes a picture as PNG, atomically.
+void WritePng(const std::string& path, const Picture& picture);
+
+// input_<view>.png (shaded) and, when the mesh has colours,
+// input_color_<view>.png.
+void DrawInput(const std::string& dir,
+               const std::vector<PreviewView>& views,
+               const TriMesh& mesh);
+
+// planes_<view>.png: clusters of the dense mesh in their colours.
+void DrawPlanes(const std::string& dir,
+                const std::vector<PreviewView>& views,
+                const TriMesh& mesh,
+                const std::vector<int>& face_plane);
+
+// wireframe_<view>.png: the light mesh, plane colours, triangle edges.
+void DrawWireframe(const std::string& dir,
+                   const std::vector<PreviewView>& views,
+                   const TriMesh& mesh,
+                   const std::vector<int>& face_plane);
+
+// <name>_<view>.png: with texture, unlit.
+void DrawTextured(const std::string& dir,
+                  const std::string& name,
+                  const std::vector<PreviewView>& views,
+                  const TexturedMesh& model);
+
+}  // namespace facet

@@ -1,0 +1,300 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+#include "pipeline/reconstruct.h"
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+#include "eval/trajectory_error.h"
+#include "mesh/mesh_io.h"
+#include "pipeline/artefacts.h"
+#include "pipeline/export_stage.h"
+#include "pipeline/report.h"
+#include "pipeline/stage_clock.h"
+#include "util/atomic_file.h"
+#include "util/errors.h"
+#include "util/parallel_for.h"
+#include "util/warnings.h"
+
+namespace facet {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+template <typename... Args>
+std::string Format(const char* format, Args... args) {
+  char text[400];
+  std::snprintf(text, sizeof(text), format, args...);
+  return text;
+}
+
+// One run: the options, what is loaded, and the report as it grows.
+class Run {
+ public:
+  explicit Run(const ReconstructOptions& options) : options_(options) {}
+
+  json Execute() {
+    PrepareFolder();
+    ParseSchedule(options_.photometric.schedule);  // fail before the work
+    sequence_ = OpenSequence(options_.sequence_path, options_.sequence);
+    report_["stages"] = json::array();
+    RunPartition();
+    if (Wanted(Stage::kSimplify)) RunSimplify();
+    if (Wanted(Stage::kKeyframes)) RunKeyframes();
+    if (Wanted(Stage::kPhotometric)) RunPhotometric();
+    if (Wanted(Stage::kGeometry)) RunGeometry();
+    if (Wanted(Stage::kExport)) RunExport();
+    return WriteReport();
+  }
+
+ private:
+  bool Wanted(Stage stage) const { return stage <= options_.to_stage; }
+  bool FromFile(Stage stage) const { return stage < options_.from_stage; }
+
+  void PrepareFolder() {
+    if (options_.from_stage > options_.to_stage) {
+      throw OptionsError("--from_stage comes after --to_stage");
+    }
+    const fs::path dir(options_.output_path);
+    if (options_.from_stage == Stage::kPartition && fs::exists(dir) &&
+        !(fs::is_directory(dir) && fs::is_empty(dir)) && !options_.overwrite) {
+      throw OptionsError("--output=" + options_.output_path +
+                         " is not empty: give another folder, --overwrite, or "
+                         "go on in it with --from_stage");
+    }
+    WriteFileAtomically(options_.output_path + "/flags.txt",
+                        options_.flags_text);
+  }
+
+  void RunPartition() {
+    StageClock clock("partition");
+    if (FromFile(Stage::kPartition)) {
+      dense_ = LoadMeshArtefact(options_, Stage::kPartition);
+      stages_.push_back(clock.Finish("read"));
+      return;
+    }
+    MeshFile file = ReadMesh(options_.mesh_path);
+    dense_.mesh = std::move(file.mesh);
+    const size_t faces = dense_.mesh.NumFaces();
+    const size_t vertices = dense_.mesh.NumVertices();
+    const CleanReport cleaned = CleanMesh(options_.clean, &dense_.mesh);
+    const SplitReport split = SplitNonManifold(&dense_.mesh);
+    if (split.non_manifold_edges + split.split_vertices > 0) {
+      AddWarning(Format("%s: opened %zu non-manifold edges and split %zu "
+                        "non-manifold vertices",
+                        options_.mesh_path.c_str(), split.non_manifold_edges,
+                        split.split_vertices));
+    }
+    PartitionReport partition_report;
+    const PlanarPartition clusters =
+        PartitionMesh(dense_.mesh, options_.partition, &partition_report);
+    MergeReport merge_report;
+    dense_.partition =
+        MergePlanes(dense_.mesh, clusters, options_.merge, &merge_report);
+    dense_.report = {
+        {"input", {{"vertices", vertices}, {"faces", faces}}},
+        {"cleaning", cleaned.Summary()},
+        {"split_vertices", split.split_vertices},
+        {"clusters", clusters.clusters.size()},
+        {"rms_before_merging_m", partition_report.rms_m},
+        {"planes", dense_.partition.clusters.size()},
+        {"rms_after_merging_m", merge_report.rms_m},
+        {"islands_absorbed", merge_report.islands}};
+    Save(options_, Stage::kPartition, dense_);
+    stages_.push_back(clock.Finish(
+        Format("%zu faces, %zu clusters (rms %.2f mm), %zu planes (%.2f mm)",
+               dense_.mesh.NumFaces(), clusters.clusters.size(),
+               1e3 * partition_report.rms_m, dense_.partition.clusters.size(),
+               1e3 * merge_report.rms_m)));
+  }
+
+  void RunSimplify() {
+    StageClock clock("simplify");
+    if (FromFile(Stage::kSimplify)) {
+      simplified_ = LoadMeshArtefact(options_, Stage::kSimplify);
+      stages_.push_back(clock.Finish("read"));
+      return;
+    }
+    SimplifyResult result =
+        SimplifyByPlanes(dense_.mesh, dense_.partition, options_.simplify);
+    simplified_.mesh = std::move(result.mesh);
+    simplified_.partition = std::move(result.partition);
+    for (const PlaneCluster& cluster : result.refit) {
+      simplified_.refitted_planes.push_back(cluster.plane);
+    }
+    simplified_.mesh.vertex_colors.clear();
+    if (!dense_.mesh.vertex_colors.empty()) {
+      for (const int birth : result.vertex_birth) {
+        simplified_.mesh.vertex_colors.push_back(
+            dense_.mesh.vertex_colors[birth]);
+      }
+    }
+    const SimplifyReport& r = result.report;
+    simplified_.report = {{"faces", r.faces_after},
+                          {"collapses", r.collapses},
+                          {"max_error_m", r.max_error_m},
+                          {"border_edges_before", r.border_edges_before},
+                          {"border_edges_after", r.border_edges_after}};
+    Save(options_, Stage::kSimplify, simplified_);
+    stages_.push_back(clock.Finish(
+        Format("%zu vertices, %zu faces (%.1f %%)",
+               simplified_.mesh.NumVertices(), simplified_.mesh.NumFaces(),
+               100.0 * static_cast<double>(simplified_.mesh.NumFaces()) /
+                   static_cast<double>(dense_.mesh.NumFaces()))));
+  }
+
+  void RunKeyframes() {
+    StageClock clock("keyframes");
+    if (FromFile(Stage::kKeyframes)) {
+      keyframes_ = LoadKeyframeArtefact(options_);
+      stages_.push_back(clock.Finish("read"));
+      return;
+    }
+    keyframes_.keyframes =
+        SelectKeyframes(*sequence_, options_.keyframes, &keyframes_.blur);
+    size_t usable = 0, held_out = 0;
+    for (const Frame& frame : sequence_->frames()) {
+      usable += frame.usable ? 1 : 0;
+      held_out +=
+          frame.usable && IsHeldOut(frame.number, options_.keyframes) ? 1 : 0;
+    }
+    keyframes_.report = {{"frames", sequence_->frames().size()},
+                         {"usable", usable},
+                         {"held_out", held_out},
+                         {"keyframes", keyframes_.keyframes.size()}};
+    Save(options_, keyframes_);
+    stages_.push_back(clock.Finish(
+        Format("%zu of %zu usable frames, %zu held out",
+               keyframes_.keyframes.size(), usable, held_out)));
+  }
+
+  // What several later stages need: poses, images, atlas.
+  void LoadForTexture() {
+    if (!initial_poses_.empty()) return;
+    for (const int k : keyframes_.keyframes) {
+      initial_poses_.push_back(sequence_->color_cam_from_world(k));
+    }
+    images_ = LoadKeyframeImages(*sequence_, keyframes_.keyframes,
+                                 options_.photometric.smoothing_sigma_px);
+    atlas_ = BuildAtlas(simplified_.mesh, simplified_.partition,
+                        options_.atlas);
+    if (options_.plane_init == PlaneInit::kSimplified) {
+      initial_planes_ = simplified_.refitted_planes;
+    } else {
+      for (const PlaneCluster& cluster : simplified_.partition.clusters) {
+        initial_planes_.push_back(cluster.plane);
+      }
+    }
+  }
+
+  void RunPhotometric() {
+    StageClock clock("photometric");
+    if (FromFile(Stage::kPhotometric)) {
+      photometric_ = LoadPhotometricArtefact(options_);
+      stages_.push_back(clock.Finish("read"));
+      return;
+    }
+    LoadForTexture();
+    const PhotometricResult result = RunPhotometricStage(
+        simplified_.mesh, simplified_.partition, initial_planes_, atlas_,
+        *sequence_, keyframes_.keyframes, initial_poses_, images_,
+        options_.visibility, options_.photometric, PrintLine);
+    WriteFileAtomically(options_.output_path + "/trace.csv",
+                        TraceCsv(result.trace));
+    photometric_.cam_from_world = result.cam_from_world;
+    photometric_.planes = result.planes;
+    photometric_.warps = result.warps;
+    photometric_.lattice = result.lattice;
+    photometric_.plane_texels = result.plane_texels;
+    photometric_.plane_frames = result.plane_frames;
+    const RigidMotion slide =
+        CommonMotion(initial_poses_, result.cam_from_world);
+    photometric_.report = PhotometricReport(result, slide);
+    Save(options_, photometric_);
+    stages_.push_back(clock.Finish(Format(
+        "%zu texels, %zu observations, rms grey %.2f -> %.2f, slide %.1f mm",
+        result.texels_observed, result.initial.observations,
+        result.initial.rms_grey, result.final_terms.rms_grey, slide.mm)));
+  }
+
+  void RunGeometry() {
+    StageClock clock("geometry");
+    if (FromFile(Stage::kGeometry)) {
+      geometry_ = LoadGeometryArtefact(options_);
+      stages_.push_back(clock.Finish("read"));
+      return;
+    }
+    geometry_.mesh = simplified_.mesh;
+    const GeometrySummary summary =
+        FitGeometry(simplified_.partition, photometric_.planes,
+                    options_.atlas.texel_size_m, options_.geometry,
+                    &geometry_.mesh);
+    geometry_.report = GeometryReport(summary);
+    Save(options_, geometry_);
+    stages_.push_back(clock.Finish(
+        Format("rms to planes %.2f -> %.2f mm, mean move %.2f mm",
+               1e3 * summary.plane_rms_before, 1e3 * summary.plane_rms_after,
+               1e3 * summary.mean_move_m)));
+  }
+
+  void RunExport() {
+    StageClock clock("export");
+    LoadForTexture();
+    const ExportInput input = {
+        *sequence_,      dense_,       simplified_,   keyframes_.keyframes,
+        initial_poses_,  initial_planes_, photometric_, geometry_.mesh,
+        atlas_,          images_};
+    export_report_ = ExportRun(options_, input);
+    stages_.push_back(clock.Finish("run folder " + options_.output_path));
+  }
+
+  json WriteReport() {
+    if (options_.to_stage == Stage::kExport) {
+      report_["result"] = {{"vertices", geometry_.mesh.NumVertices()},
+                           {"faces", geometry_.mesh.NumFaces()},
+                           {"planes", dense_.partition.clusters.size()}};
+      report_["mesh_checks"] = export_report_["mesh_checks"];
+      report_["texture"] = export_report_["texture"];
+    }
+    report_["partition"] = dense_.report;
+    report_["simplify"] = simplified_.report;
+    report_["keyframe_selection"] = keyframes_.report;
+    report_["keyframes"] = keyframes_.keyframes.size();
+    if (photometric_.report.is_object()) report_.update(photometric_.report);
+    report_["geometry"] = geometry_.report;
+    report_["stages"] = stages_;
+    AddEnvironment(&report_);
+    json settings = json::object();
+    for (int s = 0; s < kNumStages; ++s) {
+      const Stage stage = static_cast<Stage>(s);
+      settings[StageName(stage)] = StageSettings(options_, stage);
+    }
+    report_["options"] = settings;
+    report_["warnings"] = Warnings();
+    WriteFileAtomically(options_.output_path + "/report.json",
+                        report_.dump(1));
+    return report_;
+  }
+
+  const ReconstructOptions& options_;
+  std::unique_ptr<RgbdSequence> sequence_;
+  MeshArtefact dense_, simplified_;
+  KeyframeArtefact keyframes_;
+  PhotometricArtefact photometric_;
+  GeometryArtefact geometry_;
+  std::vector<Pose> initial_poses_;  // colour camera, a keyframe
+  std::vector<Plane> initial_planes_;
+  KeyframeImages images_;
+  Atlas atlas_;
+  json stages_ = json::array(), export_report_, report_ = json::object();
+};
+
+}  // namespace
+
+json Reconstruct(const ReconstructOptions& options) {
+  return Run(options).Execute();
+}
+
+}  // namespace facet

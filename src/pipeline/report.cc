@@ -1,0 +1,99 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+#include "pipeline/report.h"
+
+#include <ceres/version.h>
+#include <sys/utsname.h>
+
+#include <Eigen/Core>
+#include <opencv2/core/version.hpp>
+#include <thread>
+
+#include "costs/photo_kernel.h"
+#include "util/parallel_for.h"
+
+namespace facet {
+
+using nlohmann::json;
+
+json ToJson(const EnergyTerms& t) {
+  return {{"E_c", t.e_c},
+          {"E_p", t.e_p},
+          {"E_s", t.e_s},
+          {"E_tex", t.e_tex},
+          {"E_prior", t.e_prior},
+          {"rms_intensity", t.RmsIntensity()},
+          {"rms_grey", t.rms_grey},
+          {"observations", t.observations},
+          {"clamped", t.clamped},
+          {"clamped_share", t.ClampedShare()},
+          {"behind", t.behind}};
+}
+
+json PhotometricReport(const PhotometricResult& result,
+                       const RigidMotion& slide) {
+  const VisibilityCounts& v = result.visibility;
+  size_t rejected = 0;
+  for (const TraceRow& row : result.trace.rows) {
+    rejected += row.phase.accepted ? 0 : 1;
+  }
+  return {{"texels", result.texels},
+          {"texels_observed", result.texels_observed},
+          {"texel_stride", result.stride},
+          {"observations", result.initial.observations},
+          {"lambda1", result.lambda1},
+          {"energy",
+           {{"initial", ToJson(result.initial)},
+            {"final", ToJson(result.final_terms)}}},
+          {"slide", {{"mm", slide.mm}, {"deg", slide.deg}}},
+          {"phases",
+           {{"run", result.trace.rows.size()}, {"undone", rejected}}},
+          {"visibility",
+           {{"candidates", v.candidates},
+            {"behind_or_far", v.behind_or_far},
+            {"outside_image", v.outside_image},
+            {"grazing", v.grazing},
+            {"depth_missing", v.depth_missing},
+            {"depth_edge", v.depth_edge},
+            {"depth_disagrees", v.depth_disagrees},
+            {"occluded", v.occluded},
+            {"too_few_views", v.too_few_views},
+            {"used", v.used}}}};
+}
+
+json GeometryReport(const GeometrySummary& s) {
+  return {{"data_before", s.data_before},
+          {"data_after", s.data_after},
+          {"smooth_before", s.smooth_before},
+          {"smooth_after", s.smooth_after},
+          {"plane_rms_before_m", s.plane_rms_before},
+          {"plane_rms_after_m", s.plane_rms_after},
+          {"mean_move_m", s.mean_move_m},
+          {"max_move_m", s.max_move_m},
+          {"clamped_vertices", s.clamped_vertices},
+          {"restored_vertices", s.restored_vertices},
+          {"flipped_faces_before", s.flipped_faces_before},
+          {"flipped_faces", s.flipped_faces},
+          {"degenerate_faces", s.degenerate_faces}};
+}
+
+void AddEnvironment(json* report) {
+  utsname system{};
+  uname(&system);
+  (*report)["versions"] = {
+      {"facet", FACET_VERSION},
+      {"ceres", CERES_VERSION_STRING},
+      {"eigen", std::to_string(EIGEN_WORLD_VERSION) + "." +
+                    std::to_string(EIGEN_MAJOR_VERSION) + "." +
+                    std::to_string(EIGEN_MINOR_VERSION)},
+      {"opencv", CV_VERSION},
+      {"compiler", __VERSION__},
+      {"kernel", GetPhotoKernel().name}};
+  (*report)["machine"] = {
+      {"system", std::string(system.sysname) + " " + system.release},
+      {"architecture", system.machine},
+      {"cores", std::thread::hardware_concurrency()},
+      {"threads", NumThreads()}};
+}
+
+}  // namespace facet
