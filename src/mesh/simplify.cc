@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: MIT
 #include "mesh/simplify.h"
 
-#include <Eigen/Eigenvalues>
 #include <string>
+#include <utility>
 
 #include "mesh/adjacency.h"
+#include "mesh/partition.h"
 #include "mesh/simplify_internal.h"
 #include "util/errors.h"
 
@@ -46,50 +47,6 @@ int CountBorderEdges(const TriMesh& mesh, const std::vector<int>& labels) {
 
 }  // namespace
 
-std::vector<PlaneCluster> RefitClusters(const TriMesh& mesh,
-                                        const PlanarPartition& partition) {
-  const size_t n = partition.clusters.size();
-  std::vector<PlaneCluster> clusters(n);
-  std::vector<Eigen::Vector3d> cross(n, Eigen::Vector3d::Zero());
-  std::vector<Eigen::Matrix3d> covariance(n, Eigen::Matrix3d::Zero());
-  for (size_t f = 0; f < mesh.NumFaces(); ++f) {
-    const int id = partition.face_cluster[f];
-    const double area = mesh.FaceArea(f);
-    ++clusters[id].num_faces;
-    clusters[id].area += area;
-    clusters[id].centroid += area * mesh.FaceCentroid(f);
-    cross[id] += mesh.FaceCross(f);
-  }
-  for (PlaneCluster& cluster : clusters) {
-    if (cluster.area > 0) cluster.centroid /= cluster.area;
-  }
-  // Integral of x x' over a triangle with corners x_k about the centroid:
-  // area / 12 (sum x_k x_k' + (sum x_k)(sum x_k)').
-  for (size_t f = 0; f < mesh.NumFaces(); ++f) {
-    const int id = partition.face_cluster[f];
-    Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d total = Eigen::Vector3d::Zero();
-    for (const int v : mesh.faces[f]) {
-      const Eigen::Vector3d x = mesh.vertices[v] - clusters[id].centroid;
-      sum += x * x.transpose();
-      total += x;
-    }
-    covariance[id] += mesh.FaceArea(f) / 12 * (sum + total * total.transpose());
-  }
-  for (size_t id = 0; id < n; ++id) {
-    PlaneCluster& cluster = clusters[id];
-    cluster.plane = partition.clusters[id].plane;
-    if (!(cluster.area > 0)) continue;
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance[id]);
-    cluster.plane.normal = solver.eigenvectors().col(0);
-    if (cluster.plane.normal.dot(cross[id]) < 0) cluster.plane.normal *= -1;
-    cluster.plane.offset = -cluster.plane.normal.dot(cluster.centroid);
-    cluster.rms =
-        std::sqrt(std::max(0.0, solver.eigenvalues()[0]) / cluster.area);
-  }
-  return clusters;
-}
-
 SimplifyResult SimplifyByPlanes(const TriMesh& mesh,
                                 const PlanarPartition& partition,
                                 const SimplifyOptions& options) {
@@ -115,7 +72,9 @@ SimplifyResult SimplifyByPlanes(const TriMesh& mesh,
     }
   }
 
-  result.refit = RefitClusters(result.mesh, result.partition);
+  PlanarPartition refit = result.partition;
+  RefitClusters(result.mesh, &refit);
+  result.refit = std::move(refit.clusters);
   for (size_t id = 0; id < result.refit.size(); ++id) {
     result.partition.clusters[id].num_faces = result.refit[id].num_faces;
   }

@@ -71,7 +71,7 @@ struct SimplifyOptions {
   // to the plane of the cluster, or not larger than now; compactness
   // 4 sqrt(3) area / (l1^2 + l2^2 + l3^2), or not smaller than now.
   double min_height_share = 1e-3;
-  double max_turn_deg = 60;
+  double max_turn_deg = 80;
   double max_plane_deg = 75;
   double min_compactness = 0.02;
 };
@@ -103,11 +103,5 @@ struct SimplifyResult {
 SimplifyResult SimplifyByPlanes(const TriMesh& mesh,
                                 const PlanarPartition& partition,
                                 const SimplifyOptions& options);
-
-// Area, centroid, rms and least-squares plane (oriented like the area of the
-// faces) of every cluster, by exact integrals over the faces. Clusters without
-// area get the plane of `partition`.
-std::vector<PlaneCluster> RefitClusters(const TriMesh& mesh,
-                                        const PlanarPartition& partition);
 
 }  // namespace facet

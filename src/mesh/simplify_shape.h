@@ -26,6 +26,8 @@ inline double Compactness(const Eigen::Vector3d& p0,
   return 6.928203230275509 * area / lengths;
 }
 
+constexpr double kNoNormal = 2e-12;  // twice the area of such a face [m^2]
+
 struct ShapeLimits {
   explicit ShapeLimits(const SimplifyOptions& options)
       : min_height_share(options.min_height_share),
@@ -57,11 +59,17 @@ inline bool MayMoveCorner(const Eigen::Vector3d& from,
   const double new_compact = 3.4641016151377544 * new_norm / lengths;
   if (!(new_compact > 1e-4)) return false;
 
+  // A face that is folded over against its cluster, or has no area, may become
+  // anything that lies well.
   const double new_plane_cos = new_cross.dot(cluster_normal) / new_norm;
-  if (!(old_norm > 1e-14)) {
-    return new_plane_cos >= limits.min_plane_cos &&
-           new_compact >= limits.min_compactness;
+  const bool old_folded =
+      !(old_norm > kNoNormal) ||
+      old_cross.dot(cluster_normal) < limits.min_plane_cos * old_norm;
+  if (old_folded && new_plane_cos >= limits.min_plane_cos &&
+      new_compact >= limits.min_compactness) {
+    return true;
   }
+  if (!(old_norm > kNoNormal)) return false;
   // Heights over the same base are as the areas; the new one is measured along
   // the old normal's in-plane direction, so it is negative beyond the base.
   const double turned = new_cross.dot(old_cross);

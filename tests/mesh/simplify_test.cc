@@ -1,0 +1,173 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+#include "mesh/simplify.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "mesh/adjacency.h"
+#include "tests/mesh/plane_scenes.h"
+#include "util/errors.h"
+#include "util/parallel_for.h"
+
+namespace facet {
+namespace {
+
+double Area(const TriMesh& mesh) {
+  double area = 0;
+  for (size_t f = 0; f < mesh.NumFaces(); ++f) area += mesh.FaceArea(f);
+  return area;
+}
+
+// The guarantees of method, Sec. 3.6.
+void ExpectSound(const LabelledMesh& in, const SimplifyResult& out) {
+  const MeshChecks& a = out.report.checks_before;
+  const MeshChecks& b = out.report.checks_after;
+  EXPECT_EQ(b.non_manifold_edges + b.non_manifold_vertices + b.duplicate_faces +
+                b.degenerate_faces + b.isolated_vertices,
+            0);
+  EXPECT_EQ(a.components, b.components);
+  EXPECT_EQ(a.boundary_loops, b.boundary_loops);
+  EXPECT_EQ(a.euler, b.euler);
+  EXPECT_LE(out.report.flipped_after, out.report.flipped_before);
+  ASSERT_EQ(out.partition.clusters.size(), in.partition.clusters.size());
+  for (const PlaneCluster& c : out.partition.clusters)
+    EXPECT_GE(c.num_faces, 1);
+  ASSERT_EQ(out.partition.face_cluster.size(), out.mesh.NumFaces());
+  ASSERT_EQ(out.vertex_birth.size(), out.mesh.NumVertices());
+}
+
+// Breaks if corners move, planes bend, or flat faces are kept for nothing: a
+// cube is twelve triangles, whatever the grid.
+TEST(Simplify, CubeBecomesTwelveTriangles) {
+  const LabelledMesh cube = MakeCube(8);
+  SimplifyOptions options;
+  options.target_faces = 1;
+  const SimplifyResult result =
+      SimplifyByPlanes(cube.mesh, cube.partition, options);
+  ExpectSound(cube, result);
+  EXPECT_EQ(result.mesh.NumFaces(), 12u);
+  EXPECT_NEAR(Area(result.mesh), 6, 1e-9);
+  for (size_t v = 0; v < result.mesh.NumVertices(); ++v) {
+    EXPECT_LT(
+        (result.mesh.vertices[v] - cube.mesh.vertices[result.vertex_birth[v]])
+            .norm(),
+        1e-12);
+  }
+}
+
+// Breaks if the budget is missed, or shape is spent where it is flat: half the
+// sheet is a plane and half is a wave.
+TEST(Simplify, BudgetGoesWhereTheShapeIs) {
+  const LabelledMesh sheet = MakeSheet(24, [](double x, double y) {
+    return x <= 0.5 ? 0 : 0.02 * std::sin(25 * (x - 0.5)) * std::cos(12 * y);
+  });
+  SimplifyOptions options;
+  options.target_faces = 400;
+  options.free_error_m = 0;
+  const SimplifyResult result =
+      SimplifyByPlanes(sheet.mesh, sheet.partition, options);
+  ExpectSound(sheet, result);
+  EXPECT_LE(result.mesh.NumFaces(), 400u);
+  EXPECT_GE(result.mesh.NumFaces(), 398u);
+  EXPECT_GT(result.partition.clusters[1].num_faces,
+            2 * result.partition.clusters[0].num_faces);
+}
+
+// Breaks if step 1 touches borders: every border vertex of the input is still
+// there, where it was, when step 2 has nothing to do.
+TEST(Simplify, StepOneLeavesBorders) {
+  const LabelledMesh cube = MakeCube(6);
+  SimplifyOptions options;
+  options.stop = SimplifyStop::kCounts;
+  options.border_ratio = 1;
+  const SimplifyResult result =
+      SimplifyByPlanes(cube.mesh, cube.partition, options);
+  ExpectSound(cube, result);
+  EXPECT_EQ(result.report.border_edges_after, 12 * 6);
+  EXPECT_LT(result.mesh.NumFaces(), cube.mesh.NumFaces() / 2);
+  std::vector<int> birth = result.vertex_birth;
+  std::sort(birth.begin(), birth.end());
+  for (const MeshEdge& edge : CollectEdges(cube.mesh)) {
+    if (!IsBorder(edge, cube.partition.face_cluster)) continue;
+    EXPECT_TRUE(std::binary_search(birth.begin(), birth.end(), edge.v0));
+    EXPECT_TRUE(std::binary_search(birth.begin(), birth.end(), edge.v1));
+  }
+}
+
+// Breaks if the counts of the paper's two steps are not met.
+TEST(Simplify, PaperCounts) {
+  const LabelledMesh cube = MakeCube(20);
+  SimplifyOptions options;
+  options.stop = SimplifyStop::kCounts;
+  options.collapse_to_border = false;
+  const SimplifyResult result =
+      SimplifyByPlanes(cube.mesh, cube.partition, options);
+  ExpectSound(cube, result);
+  EXPECT_LE(result.report.border_edges_after,
+            std::max(10.0, 0.1 * result.report.border_edges_before));
+}
+
+// Breaks if a boundary vertex is moved or removed although it was to be kept.
+TEST(Simplify, KeepsTheMeshBoundary) {
+  const LabelledMesh sheet =
+      MakeSheet(8, [](double x, double y) { return 0.01 * x * y; });
+  SimplifyOptions options;
+  options.target_faces = 1;
+  options.keep_mesh_boundary = true;
+  const SimplifyResult result =
+      SimplifyByPlanes(sheet.mesh, sheet.partition, options);
+  ExpectSound(sheet, result);
+  EXPECT_EQ(result.report.checks_after.boundary_edges,
+            result.report.checks_before.boundary_edges);
+}
+
+// Breaks if a closed surface of one label, without any border, is eaten up, or
+// the test for tetrahedra is lost.
+TEST(Simplify, ClosedSurfaceOfOneLabelStaysClosed) {
+  LabelledMesh cube = MakeCube(3);
+  cube.partition.face_cluster.assign(cube.mesh.NumFaces(), 0);
+  RefitClusters(cube.mesh, &cube.partition);
+  SimplifyOptions options;
+  options.target_faces = 1;
+  options.max_error_m = 10;
+  const SimplifyResult result =
+      SimplifyByPlanes(cube.mesh, cube.partition, options);
+  EXPECT_GE(result.mesh.NumFaces(), 4u);
+  EXPECT_EQ(result.report.checks_after.euler, 2);
+  EXPECT_EQ(result.report.checks_after.duplicate_faces, 0);
+  EXPECT_EQ(result.report.checks_after.boundary_edges, 0);
+}
+
+// Breaks if a collapse or a queue depends on the number of threads or on
+// anything but the input.
+TEST(Simplify, SameInputSameBits) {
+  const LabelledMesh sheet = MakeSheet(
+      12, [](double x, double y) { return 0.05 * std::sin(9 * x + 4 * y); });
+  SimplifyOptions options;
+  options.target_faces = 150;
+  SetNumThreads(1);
+  const auto one = SimplifyByPlanes(sheet.mesh, sheet.partition, options);
+  SetNumThreads(2);
+  const auto two = SimplifyByPlanes(sheet.mesh, sheet.partition, options);
+  SetNumThreads(0);
+  EXPECT_EQ(one.mesh.faces, two.mesh.faces);
+  EXPECT_EQ(one.mesh.vertices, two.mesh.vertices);
+}
+
+// Breaks if bad options or a non-manifold mesh get through.
+TEST(Simplify, RefusesWhatItCannotDo) {
+  LabelledMesh sheet = MakeSheet(2, [](double, double) { return 0.0; });
+  SimplifyOptions options;
+  options.border_ratio = 0;
+  EXPECT_THROW(SimplifyByPlanes(sheet.mesh, sheet.partition, options),
+               OptionsError);
+  sheet.mesh.faces.push_back(sheet.mesh.faces[0]);
+  sheet.partition.face_cluster.push_back(0);
+  EXPECT_THROW(SimplifyByPlanes(sheet.mesh, sheet.partition, SimplifyOptions()),
+               UnsolvableError);
+}
+
+}  // namespace
+}  // namespace facet
