@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Texels: sample points on the planes of the mesh (paper, Sec. 3.3; method
-// ch. 4). A texel is a point p on a face of the simplified mesh; its plane point
-// q = p - (n.p + w) n is recomputed whenever the plane changes.
+// ch. 4). A texel is a point p on a face of the simplified mesh; its plane
+// point q = p - (n.p + w) n is recomputed whenever the plane changes.
 #pragma once
 
 #include <Eigen/Core>
@@ -30,8 +30,10 @@ struct TexelSet {
   size_t MemoryBytes() const { return size() * (12 + 4 + 4 + 8); }
 };
 
-// The texels of all front-facing charts (steep ones take no part in E_c and E_p)
-// on every `stride`-th column and row of each chart's grid.
+// The texels of all front-facing charts (steep and back ones take no part in
+// E_c and E_p) on every `stride`-th column and row of each chart's grid, centred
+// in the chart, so that charts narrower than the stride still get some. Throws
+// OptionsError when stride < 1.
 TexelSet SampleTexels(const TriMesh& mesh,
                       const PlanarPartition& partition,
                       const Atlas& atlas,
