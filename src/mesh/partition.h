@@ -49,7 +49,7 @@ struct PartitionReport {
 // their faces are neighbours. Clusters come in the order of their first faces.
 // Stops at the number of connected components if that is more than the target
 // (warning). Throws OptionsError for senseless options, also for a target that
-// is not below the number of faces. Deterministic, one thread; about 220 bytes
+// is not below the number of faces. Deterministic, one thread; about 160 bytes
 // a face beside the mesh.
 PlanarPartition PartitionMesh(const TriMesh& mesh,
                               const PartitionOptions& options,
