@@ -62,8 +62,9 @@ Trace RunSchedule(const TextureProblem& problem,
       }
       objective.push_back(current.Objective());
       const size_t n = objective.size();
-      if (n >= 3 && objective[n - 3] - objective[n - 1] <
-                        stop.relative_decrease * objective[n - 3]) {
+      if (stop.relative_decrease > 0 && n >= 3 &&
+          objective[n - 3] - objective[n - 1] <=
+              stop.relative_decrease * objective[n - 3]) {
         break;
       }
     }
