@@ -72,6 +72,8 @@ int Synthesize() {
   if (FLAGS_output.empty()) {
     throw OptionsError("--output is missing: name the folder to write");
   }
+  if (FLAGS_threads < 0) throw OptionsError("--threads must not be negative");
+  CheckSynthOutput(FLAGS_output, FLAGS_overwrite);
   SetNumThreads(FLAGS_threads);
   const Stopwatch watch;
   const SynthScan scan = MakeRoom(FLAGS_seed, OptionsFromFlags());
@@ -97,6 +99,6 @@ int main(int argc, char** argv) {
   facet::AppDescription description;
   description.usage =
       "Renders a synthetic RGB-D scan of a furnished room with ground truth.\n"
-      "  facet-synthesize --output=DIR --seed=1 --frames=150";
+      "  facet-synthesize --output=DIR --seed=1";
   return facet::RunApp(argc, argv, description, facet::Synthesize);
 }

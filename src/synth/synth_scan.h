@@ -74,6 +74,10 @@ std::vector<float> RenderRoom(const SynthScan& scan,
                               const Pose& cam_from_world,
                               int supersampling);
 
+// Throws OptionsError when WriteSynthSequence would refuse `path`; ask before
+// the long work.
+void CheckSynthOutput(const std::string& path, bool overwrite);
+
 // Writes the folder layout of docs/formats.md: info.txt and for every frame
 // frame-NNNNNN.{color.jpg (quality 95), depth.png, pose.txt}; beside them
 // poses_true.txt (rgbd/trajectory_io.h, depth camera), mesh_true.ply (plane_id

@@ -115,38 +115,42 @@ void WriteFrame(const SynthScan& scan, const std::string& path, int i) {
                       MatrixText(scan.given_poses[i].Inverse().Matrix(), '\n'));
 }
 
-// An empty or new folder, or one whose frames may go.
-void PrepareFolder(const std::string& path, bool overwrite) {
+// Creates the folder, or removes the frames in it.
+void PrepareFolder(const std::string& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (error) {
+    throw InputError("cannot create folder '" + path + "': " + error.message());
+  }
+  std::vector<fs::path> old;
+  for (const auto& entry : fs::directory_iterator(path)) {
+    const std::string name = entry.path().filename().string();
+    if (name.rfind("frame-", 0) == 0) old.push_back(entry.path());
+  }
+  for (const auto& file : old) fs::remove(file, error);
+}
+
+}  // namespace
+
+void CheckSynthOutput(const std::string& path, bool overwrite) {
   std::error_code error;
   if (fs::exists(path, error) && !fs::is_directory(path, error)) {
     throw OptionsError("output '" + path +
                        "' is a file: name a folder instead");
   }
-  if (fs::is_directory(path, error) && !fs::is_empty(path, error)) {
-    if (!overwrite) {
-      throw OptionsError("output '" + path +
-                         "' is not empty: choose another folder or pass "
-                         "--overwrite");
-    }
-    std::vector<fs::path> old;
-    for (const auto& entry : fs::directory_iterator(path)) {
-      const std::string name = entry.path().filename().string();
-      if (name.rfind("frame-", 0) == 0) old.push_back(entry.path());
-    }
-    for (const auto& file : old) fs::remove(file, error);
-  }
-  fs::create_directories(path, error);
-  if (error) {
-    throw InputError("cannot create folder '" + path + "': " + error.message());
+  if (!overwrite && fs::is_directory(path, error) &&
+      !fs::is_empty(path, error)) {
+    throw OptionsError("output '" + path +
+                       "' is not empty: choose another folder or pass "
+                       "--overwrite");
   }
 }
-
-}  // namespace
 
 void WriteSynthSequence(const SynthScan& scan,
                         const std::string& path,
                         bool overwrite) {
-  PrepareFolder(path, overwrite);
+  CheckSynthOutput(path, overwrite);
+  PrepareFolder(path);
   WriteFileAtomically(path + "/info.txt", InfoText(scan));
   std::vector<NumberedPose> poses;
   for (size_t i = 0; i < scan.true_poses.size(); ++i) {
