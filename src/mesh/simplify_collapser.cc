@@ -1,212 +1,13 @@
 // Copyright (c) 2026 The facet authors
 // SPDX-License-Identifier: MIT
-#include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
+//
+// Which collapses are admissible, what they do, and in which order they come.
 #include <algorithm>
-#include <limits>
-#include <queue>
-#include <string>
+#include <cmath>
 
-#include "mesh/quadric.h"
-#include "mesh/simplify_internal.h"
-#include "mesh/simplify_shape.h"
-#include "util/errors.h"
+#include "mesh/simplify_kernel.h"
 
 namespace facet {
-namespace {
-
-struct KernelTraits : public OpenMesh::DefaultTraits {
-  typedef OpenMesh::Vec3d Point;
-  VertexAttributes(OpenMesh::Attributes::Status);
-  HalfedgeAttributes(OpenMesh::Attributes::PrevHalfedge);
-  EdgeAttributes(OpenMesh::Attributes::Status);
-  FaceAttributes(OpenMesh::Attributes::Status);
-};
-using Kernel = OpenMesh::TriMesh_ArrayKernelT<KernelTraits>;
-using EdgeHandle = Kernel::EdgeHandle;
-using HalfedgeHandle = Kernel::HalfedgeHandle;
-using VertexHandle = Kernel::VertexHandle;
-
-enum EdgeClass { kInner = 1, kBorder = 2, kChord = 4 };
-
-// An edge in the queue. It is out of date when the versions of its ends have
-// moved on.
-struct Candidate {
-  double cost;
-  int edge;
-  int choice;  // of the target, see Plan
-  uint32_t stamp;
-  bool operator<(const Candidate& other) const {  // the cheapest on top
-    return cost != other.cost ? cost > other.cost : edge > other.edge;
-  }
-};
-
-// What a collapse would do: `halfedge` points from the vertex that goes to the
-// one that stays and moves to `target`.
-struct Collapse {
-  HalfedgeHandle halfedge;
-  Eigen::Vector3d target;
-  double cost = 0;
-  int last_choice = 0;
-};
-
-constexpr int kNumChoices = 4;
-
-}  // namespace
-
-struct Collapser::Impl {
-  Impl(const TriMesh& mesh,
-       const PlanarPartition& partition_in,
-       const SimplifyOptions& options_in)
-      : partition(partition_in), options(options_in), limits(options_in) {
-    BuildKernel(mesh);
-    MarkBorders();
-    BuildQuadrics(mesh);
-  }
-
-  void BuildKernel(const TriMesh& mesh);
-  void MarkBorders();
-  void BuildQuadrics(const TriMesh& mesh);
-
-  EdgeClass ClassOf(EdgeHandle e) const;
-  bool MayCollapse(EdgeHandle e) const;
-  Collapse Plan(EdgeHandle e, int choice) const;
-  bool LinkAllows(const Collapse& collapse) const;
-  bool ShapeAllows(const Collapse& collapse) const;
-  void Execute(const Collapse& collapse);
-  void Push(EdgeHandle e);
-  void Fill(int classes);
-  void Requeue(VertexHandle kept);
-  void CountRing(HalfedgeHandle h, int sign);
-  double ErrorOf(const Collapse& collapse) const;
-  template <typename Wanted, typename Done>
-  void Run(const Wanted& wanted, const Done& done);
-
-  uint32_t Stamp(EdgeHandle e) const {
-    const HalfedgeHandle h = kernel.halfedge_handle(e, 0);
-    return version[kernel.from_vertex_handle(h).idx()] +
-           version[kernel.to_vertex_handle(h).idx()];
-  }
-  bool IsCorner(int v) const {
-    return border_degree[v] != 0 && border_degree[v] != 2;
-  }
-  int ClusterOf(EdgeHandle e) const {  // of an edge inside a cluster
-    return label[kernel.face_handle(kernel.halfedge_handle(e, 0)).idx()];
-  }
-
-  const PlanarPartition& partition;
-  const SimplifyOptions options;
-  const ShapeLimits limits;
-  Kernel kernel;
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();
-  double total_area = 0;
-  std::vector<Eigen::Vector3d> position;  // about `center`, a vertex
-  std::vector<Quadric> quadric;           // a vertex
-  std::vector<double> weight;             // area in the quadric, a vertex
-  std::vector<uint32_t> version;          // a vertex
-  std::vector<int> border_degree;         // border edges at a vertex
-  std::vector<int> label;                 // a face
-  std::vector<uint8_t> border;            // an edge
-  std::vector<uint8_t> rejected;          // an edge, tried in vain
-  std::vector<int> cluster_faces;         // faces left in a cluster
-  std::vector<int> cluster_inner;         // candidates of step 1 in a cluster
-  int num_faces = 0, num_border = 0, num_collapses = 0;
-  double max_error = 0;
-  int active = 0;  // classes of edges that may collapse now
-  std::priority_queue<Candidate> queue;
-};
-
-void Collapser::Impl::BuildKernel(const TriMesh& mesh) {
-  for (const auto& v : mesh.vertices) center += v;
-  center /= static_cast<double>(std::max<size_t>(1, mesh.NumVertices()));
-  kernel.reserve(
-      mesh.NumVertices(), 3 * mesh.NumFaces() / 2 + 1000, mesh.NumFaces());
-  position.reserve(mesh.NumVertices());
-  for (const auto& v : mesh.vertices) {
-    kernel.new_vertex();
-    position.push_back(v - center);
-  }
-  for (size_t f = 0; f < mesh.NumFaces(); ++f) {
-    const auto& face = mesh.faces[f];
-    const auto added = kernel.add_face(
-        VertexHandle(face[0]), VertexHandle(face[1]), VertexHandle(face[2]));
-    if (!added.is_valid()) {
-      throw UnsolvableError(
-          "simplification: the mesh is not manifold at face " +
-          std::to_string(f) + "; split non-manifold edges and vertices first");
-    }
-    total_area += mesh.FaceArea(f);
-  }
-  label = partition.face_cluster;
-  num_faces = static_cast<int>(mesh.NumFaces());
-  cluster_faces.assign(partition.clusters.size(), 0);
-  for (const int id : label) ++cluster_faces[id];
-}
-
-void Collapser::Impl::MarkBorders() {
-  border.assign(kernel.n_edges(), 0);
-  rejected.assign(kernel.n_edges(), 0);
-  border_degree.assign(kernel.n_vertices(), 0);
-  version.assign(kernel.n_vertices(), 0);
-  for (const EdgeHandle e : kernel.edges()) {
-    const HalfedgeHandle h = kernel.halfedge_handle(e, 0);
-    const auto left = kernel.face_handle(h);
-    const auto right = kernel.opposite_face_handle(h);
-    if (left.is_valid() && right.is_valid() &&
-        label[left.idx()] == label[right.idx()]) {
-      continue;
-    }
-    border[e.idx()] = 1;
-    ++num_border;
-    ++border_degree[kernel.from_vertex_handle(h).idx()];
-    ++border_degree[kernel.to_vertex_handle(h).idx()];
-  }
-  cluster_inner.assign(partition.clusters.size(), 0);
-  for (const EdgeHandle e : kernel.edges()) {
-    if (ClassOf(e) == kInner) ++cluster_inner[ClusterOf(e)];
-  }
-}
-
-void Collapser::Impl::BuildQuadrics(const TriMesh& mesh) {
-  const double point_weight =
-      options.point_share * total_area / std::max(1, num_faces);
-  const double share = options.cluster_plane_share;
-  quadric.reserve(position.size());
-  for (const auto& p : position) {
-    quadric.push_back(Quadric::Point(p, point_weight));
-  }
-  weight.assign(position.size(), 1e-30);
-  for (size_t f = 0; f < mesh.NumFaces(); ++f) {
-    const Eigen::Vector3d cross = mesh.FaceCross(f);
-    const double norm = cross.norm();
-    if (!(norm > 0)) continue;
-    const Eigen::Vector3d n = cross / norm;
-    const double w = norm / 6;  // a third of the area, per corner
-    const Plane& plane = partition.clusters[label[f]].plane;
-    Quadric q =
-        Quadric::Plane(n, -n.dot(position[mesh.faces[f][0]]), (1 - share) * w);
-    q += Quadric::Plane(plane.normal, plane.SignedDistance(center), share * w);
-    for (const int v : mesh.faces[f]) {
-      quadric[v] += q;
-      weight[v] += w;
-    }
-  }
-  for (const EdgeHandle e : kernel.edges()) {
-    if (!border[e.idx()]) continue;
-    const HalfedgeHandle h = kernel.halfedge_handle(e, 0);
-    const int a = kernel.from_vertex_handle(h).idx();
-    const int b = kernel.to_vertex_handle(h).idx();
-    const Eigen::Vector3d d = position[b] - position[a];
-    const double length_sq = d.squaredNorm();
-    if (!(length_sq > 0)) continue;
-    const Quadric q = Quadric::Line(
-        position[a],
-        d / std::sqrt(length_sq),
-        length_sq * (kernel.is_boundary(e) ? options.mesh_boundary_weight
-                                           : options.cluster_border_weight));
-    quadric[a] += q;
-    quadric[b] += q;
-  }
-}
 
 EdgeClass Collapser::Impl::ClassOf(EdgeHandle e) const {
   if (border[e.idx()]) return kBorder;
@@ -450,6 +251,7 @@ void Collapser::RunCounts() {
     m.Fill(kBorder);
     m.Run(always, [&m, goal] { return m.num_border <= goal; });
   }
+  m.RemoveFlatFaces();
 }
 
 void Collapser::RunBudget() {
@@ -463,28 +265,7 @@ void Collapser::RunBudget() {
         return m.num_faces > budget || m.ErrorOf(plan) < m.options.free_error_m;
       },
       [] { return false; });
-}
-
-void Collapser::Extract(SimplifyResult* result) const {
-  const Impl& m = *impl_;
-  std::vector<int> index(m.position.size(), -1);
-  for (const auto f : m.kernel.faces()) {
-    std::array<int, 3> face;
-    int k = 0;
-    for (const VertexHandle v : m.kernel.fv_range(f)) {
-      int& i = index[v.idx()];
-      if (i < 0) {
-        i = static_cast<int>(result->vertex_birth.size());
-        result->vertex_birth.push_back(v.idx());
-        result->mesh.vertices.push_back(m.position[v.idx()] + m.center);
-      }
-      face[k++] = i;
-    }
-    result->mesh.faces.push_back(face);
-    result->partition.face_cluster.push_back(m.label[f.idx()]);
-  }
-  result->report.collapses = m.num_collapses;
-  result->report.max_error_m = m.max_error;
+  m.RemoveFlatFaces();
 }
 
 }  // namespace facet

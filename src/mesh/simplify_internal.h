@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // The collapsing loop behind SimplifyByPlanes. Internal to the simplification;
-// OpenMesh stays in simplify_collapser.cc.
+// OpenMesh stays behind simplify_kernel.h.
 #pragma once
 
 #include <memory>

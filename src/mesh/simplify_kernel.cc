@@ -1,0 +1,193 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+//
+// Building the kernel, mending what collapses cannot, and reading it out.
+#include "mesh/simplify_kernel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "util/errors.h"
+
+namespace facet {
+
+void Collapser::Impl::BuildKernel(const TriMesh& mesh) {
+  for (const auto& v : mesh.vertices) center += v;
+  center /= static_cast<double>(std::max<size_t>(1, mesh.NumVertices()));
+  kernel.reserve(
+      mesh.NumVertices(), 3 * mesh.NumFaces() / 2 + 1000, mesh.NumFaces());
+  position.reserve(mesh.NumVertices());
+  for (const auto& v : mesh.vertices) {
+    kernel.new_vertex();
+    position.push_back(v - center);
+  }
+  for (size_t f = 0; f < mesh.NumFaces(); ++f) {
+    const auto& face = mesh.faces[f];
+    const auto added = kernel.add_face(
+        VertexHandle(face[0]), VertexHandle(face[1]), VertexHandle(face[2]));
+    if (!added.is_valid()) {
+      throw UnsolvableError(
+          "simplification: the mesh is not manifold at face " +
+          std::to_string(f) + "; split non-manifold edges and vertices first");
+    }
+    total_area += mesh.FaceArea(f);
+  }
+  label = partition.face_cluster;
+  num_faces = static_cast<int>(mesh.NumFaces());
+  cluster_faces.assign(partition.clusters.size(), 0);
+  for (const int id : label) ++cluster_faces[id];
+}
+
+void Collapser::Impl::MarkBorders() {
+  border.assign(kernel.n_edges(), 0);
+  rejected.assign(kernel.n_edges(), 0);
+  border_degree.assign(kernel.n_vertices(), 0);
+  version.assign(kernel.n_vertices(), 0);
+  for (const EdgeHandle e : kernel.edges()) {
+    const HalfedgeHandle h = kernel.halfedge_handle(e, 0);
+    const auto left = kernel.face_handle(h);
+    const auto right = kernel.opposite_face_handle(h);
+    if (left.is_valid() && right.is_valid() &&
+        label[left.idx()] == label[right.idx()]) {
+      continue;
+    }
+    border[e.idx()] = 1;
+    ++num_border;
+    ++border_degree[kernel.from_vertex_handle(h).idx()];
+    ++border_degree[kernel.to_vertex_handle(h).idx()];
+  }
+  cluster_inner.assign(partition.clusters.size(), 0);
+  for (const EdgeHandle e : kernel.edges()) {
+    if (ClassOf(e) == kInner) ++cluster_inner[ClusterOf(e)];
+  }
+}
+
+void Collapser::Impl::BuildQuadrics(const TriMesh& mesh) {
+  const double point_weight =
+      options.point_share * total_area / std::max(1, num_faces);
+  const double share = options.cluster_plane_share;
+  quadric.reserve(position.size());
+  for (const auto& p : position) {
+    quadric.push_back(Quadric::Point(p, point_weight));
+  }
+  weight.assign(position.size(), 1e-30);
+  for (size_t f = 0; f < mesh.NumFaces(); ++f) {
+    const Eigen::Vector3d cross = mesh.FaceCross(f);
+    const double norm = cross.norm();
+    if (!(norm > 0)) continue;
+    const Eigen::Vector3d n = cross / norm;
+    const double w = norm / 6;  // a third of the area, per corner
+    const Plane& plane = partition.clusters[label[f]].plane;
+    Quadric q =
+        Quadric::Plane(n, -n.dot(position[mesh.faces[f][0]]), (1 - share) * w);
+    q += Quadric::Plane(plane.normal, plane.SignedDistance(center), share * w);
+    for (const int v : mesh.faces[f]) {
+      quadric[v] += q;
+      weight[v] += w;
+    }
+  }
+  for (const EdgeHandle e : kernel.edges()) {
+    if (!border[e.idx()]) continue;
+    const HalfedgeHandle h = kernel.halfedge_handle(e, 0);
+    const int a = kernel.from_vertex_handle(h).idx();
+    const int b = kernel.to_vertex_handle(h).idx();
+    const Eigen::Vector3d d = position[b] - position[a];
+    const double length_sq = d.squaredNorm();
+    if (!(length_sq > 0)) continue;
+    const Quadric q = Quadric::Line(
+        position[a],
+        d / std::sqrt(length_sq),
+        length_sq * (kernel.is_boundary(e) ? options.mesh_boundary_weight
+                                           : options.cluster_border_weight));
+    quadric[a] += q;
+    quadric[b] += q;
+  }
+}
+
+double Collapser::Impl::AreaOf(OpenMesh::FaceHandle face) const {
+  const HalfedgeHandle h = kernel.halfedge_handle(face);
+  const Eigen::Vector3d& p = position[kernel.from_vertex_handle(h).idx()];
+  const Eigen::Vector3d& q = position[kernel.to_vertex_handle(h).idx()];
+  const Eigen::Vector3d& r =
+      position[kernel.to_vertex_handle(kernel.next_halfedge_handle(h)).idx()];
+  return 0.5 * (q - p).cross(r - p).norm();
+}
+
+// Removes a face by the first admissible collapse of one of its sides.
+bool Collapser::Impl::CollapseSideOf(OpenMesh::FaceHandle face) {
+  for (const EdgeHandle e : kernel.fe_range(face)) {
+    if (!MayCollapse(e)) continue;
+    for (int choice = 0; choice < kNumChoices; ++choice) {
+      const Collapse plan = Plan(e, choice);
+      if (ErrorOf(plan) <= options.max_error_m && LinkAllows(plan) &&
+          ShapeAllows(plan)) {
+        Execute(plan);
+        return true;
+      }
+      if (choice >= plan.last_choice) break;
+    }
+  }
+  return false;
+}
+
+// Flips the side of the face that lies opposite to its widest corner, if both
+// new faces have an area and look to the side of the old neighbour.
+bool Collapser::Impl::FlipSideOf(OpenMesh::FaceHandle face) {
+  for (const HalfedgeHandle h : kernel.fh_range(face)) {
+    const EdgeHandle e = kernel.edge_handle(h);
+    if (border[e.idx()] || !kernel.is_flip_ok(e)) continue;
+    const HalfedgeHandle o = kernel.opposite_halfedge_handle(h);
+    const auto at = [this](VertexHandle v) { return position[v.idx()]; };
+    const Eigen::Vector3d a = at(kernel.from_vertex_handle(h));
+    const Eigen::Vector3d b = at(kernel.to_vertex_handle(h));
+    const Eigen::Vector3d c =
+        at(kernel.to_vertex_handle(kernel.next_halfedge_handle(h)));
+    const Eigen::Vector3d d =
+        at(kernel.to_vertex_handle(kernel.next_halfedge_handle(o)));
+    const Eigen::Vector3d old_cross = (a - b).cross(d - b);
+    const Eigen::Vector3d cross_a = (d - a).cross(c - a);
+    const Eigen::Vector3d cross_b = (c - b).cross(d - b);
+    if (std::min(cross_a.norm(), cross_b.norm()) < 2 * kNoNormal ||
+        cross_a.dot(old_cross) <= 0 || cross_b.dot(old_cross) <= 0) {
+      continue;
+    }
+    kernel.flip(e);
+    return true;
+  }
+  return false;
+}
+
+// The dense mesh may bring faces without area along that no cheap collapse came
+// across.
+void Collapser::Impl::RemoveFlatFaces() {
+  active = kInner | kBorder;
+  for (const auto face : kernel.faces()) {
+    if (kernel.status(face).deleted() || AreaOf(face) >= kNoNormal) continue;
+    if (!CollapseSideOf(face)) FlipSideOf(face);
+  }
+}
+
+void Collapser::Extract(SimplifyResult* result) const {
+  const Impl& m = *impl_;
+  std::vector<int> index(m.position.size(), -1);
+  for (const auto f : m.kernel.faces()) {
+    std::array<int, 3> face;
+    int k = 0;
+    for (const VertexHandle v : m.kernel.fv_range(f)) {
+      int& i = index[v.idx()];
+      if (i < 0) {
+        i = static_cast<int>(result->vertex_birth.size());
+        result->vertex_birth.push_back(v.idx());
+        result->mesh.vertices.push_back(m.position[v.idx()] + m.center);
+      }
+      face[k++] = i;
+    }
+    result->mesh.faces.push_back(face);
+    result->partition.face_cluster.push_back(m.label[f.idx()]);
+  }
+  result->report.collapses = m.num_collapses;
+  result->report.max_error_m = m.max_error;
+}
+
+}  // namespace facet

@@ -1,0 +1,121 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+//
+// What the collapsing loop works on. Internal to the simplification: the only
+// header that includes OpenMesh, for simplify_*.cc alone.
+#pragma once
+
+#include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
+#include <queue>
+#include <vector>
+
+#include "mesh/quadric.h"
+#include "mesh/simplify_internal.h"
+#include "mesh/simplify_shape.h"
+
+namespace facet {
+
+struct KernelTraits : public OpenMesh::DefaultTraits {
+  typedef OpenMesh::Vec3d Point;
+  VertexAttributes(OpenMesh::Attributes::Status);
+  HalfedgeAttributes(OpenMesh::Attributes::PrevHalfedge);
+  EdgeAttributes(OpenMesh::Attributes::Status);
+  FaceAttributes(OpenMesh::Attributes::Status);
+};
+using Kernel = OpenMesh::TriMesh_ArrayKernelT<KernelTraits>;
+using EdgeHandle = Kernel::EdgeHandle;
+using HalfedgeHandle = Kernel::HalfedgeHandle;
+using VertexHandle = Kernel::VertexHandle;
+
+enum EdgeClass { kInner = 1, kBorder = 2, kChord = 4 };
+
+// An edge in the queue. It is out of date when the versions of its ends have
+// moved on.
+struct Candidate {
+  double cost;
+  int edge;
+  int choice;  // of the target, see Plan
+  uint32_t stamp;
+  bool operator<(const Candidate& other) const {  // the cheapest on top
+    return cost != other.cost ? cost > other.cost : edge > other.edge;
+  }
+};
+
+// What a collapse would do: `halfedge` points from the vertex that goes to the
+// one that stays and moves to `target`.
+struct Collapse {
+  HalfedgeHandle halfedge;
+  Eigen::Vector3d target;
+  double cost = 0;
+  int last_choice = 0;
+};
+
+constexpr int kNumChoices = 4;  // of a target, see Plan
+
+struct Collapser::Impl {
+  Impl(const TriMesh& mesh,
+       const PlanarPartition& partition_in,
+       const SimplifyOptions& options_in)
+      : partition(partition_in), options(options_in), limits(options_in) {
+    BuildKernel(mesh);
+    MarkBorders();
+    BuildQuadrics(mesh);
+  }
+
+  void BuildKernel(const TriMesh& mesh);
+  void MarkBorders();
+  void BuildQuadrics(const TriMesh& mesh);
+
+  EdgeClass ClassOf(EdgeHandle e) const;
+  bool MayCollapse(EdgeHandle e) const;
+  Collapse Plan(EdgeHandle e, int choice) const;
+  bool LinkAllows(const Collapse& collapse) const;
+  bool ShapeAllows(const Collapse& collapse) const;
+  void Execute(const Collapse& collapse);
+  void Push(EdgeHandle e);
+  void Fill(int classes);
+  void RemoveFlatFaces();
+  bool CollapseSideOf(OpenMesh::FaceHandle face);
+  bool FlipSideOf(OpenMesh::FaceHandle face);
+  double AreaOf(OpenMesh::FaceHandle face) const;
+  void Requeue(VertexHandle kept);
+  void CountRing(HalfedgeHandle h, int sign);
+  double ErrorOf(const Collapse& collapse) const;
+  template <typename Wanted, typename Done>
+  void Run(const Wanted& wanted, const Done& done);
+
+  uint32_t Stamp(EdgeHandle e) const {
+    const HalfedgeHandle h = kernel.halfedge_handle(e, 0);
+    return version[kernel.from_vertex_handle(h).idx()] +
+           version[kernel.to_vertex_handle(h).idx()];
+  }
+  bool IsCorner(int v) const {
+    return border_degree[v] != 0 && border_degree[v] != 2;
+  }
+  int ClusterOf(EdgeHandle e) const {  // of an edge inside a cluster
+    return label[kernel.face_handle(kernel.halfedge_handle(e, 0)).idx()];
+  }
+
+  const PlanarPartition& partition;
+  const SimplifyOptions options;
+  const ShapeLimits limits;
+  Kernel kernel;
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  double total_area = 0;
+  std::vector<Eigen::Vector3d> position;  // about `center`, a vertex
+  std::vector<Quadric> quadric;           // a vertex
+  std::vector<double> weight;             // area in the quadric, a vertex
+  std::vector<uint32_t> version;          // a vertex
+  std::vector<int> border_degree;         // border edges at a vertex
+  std::vector<int> label;                 // a face
+  std::vector<uint8_t> border;            // an edge
+  std::vector<uint8_t> rejected;          // an edge, tried in vain
+  std::vector<int> cluster_faces;         // faces left in a cluster
+  std::vector<int> cluster_inner;         // candidates of step 1 in a cluster
+  int num_faces = 0, num_border = 0, num_collapses = 0;
+  double max_error = 0;
+  int active = 0;  // classes of edges that may collapse now
+  std::priority_queue<Candidate> queue;
+};
+
+}  // namespace facet
