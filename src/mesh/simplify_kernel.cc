@@ -158,13 +158,58 @@ bool Collapser::Impl::FlipSideOf(OpenMesh::FaceHandle face) {
   return false;
 }
 
+bool Collapser::Impl::MayMove(VertexHandle v,
+                              const Eigen::Vector3d& target) const {
+  for (const HalfedgeHandle h : kernel.voh_range(v)) {
+    if (kernel.is_boundary(h)) continue;
+    const VertexHandle v2 = kernel.to_vertex_handle(h);
+    const VertexHandle v3 =
+        kernel.to_vertex_handle(kernel.next_halfedge_handle(h));
+    const int id = label[kernel.face_handle(h).idx()];
+    if (!MayMoveCorner(position[v.idx()],
+                       target,
+                       position[v2.idx()],
+                       position[v3.idx()],
+                       partition.clusters[id].plane.normal,
+                       limits)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// Gives a face an area by moving one corner inside its plane, 10 um to 1 mm:
+// the last resort for specks of a micrometre among needles.
+bool Collapser::Impl::NudgeCornerOf(OpenMesh::FaceHandle face) {
+  const Eigen::Vector3d n = partition.clusters[label[face.idx()]].plane.normal;
+  const Eigen::Vector3d u = n.unitOrthogonal();
+  const Eigen::Vector3d w = n.cross(u);
+  for (double step = 1e-5; step < 2e-3; step *= 10) {
+    for (const VertexHandle v : kernel.fv_range(face)) {
+      if (IsCorner(v.idx())) continue;
+      if (options.keep_mesh_boundary && kernel.is_boundary(v)) continue;
+      const Eigen::Vector3d old = position[v.idx()];
+      for (int k = 0; k < 16; ++k) {
+        const double angle = M_PI / 8 * k;
+        const Eigen::Vector3d target =
+            old + step * (std::cos(angle) * u + std::sin(angle) * w);
+        if (!MayMove(v, target)) continue;
+        position[v.idx()] = target;
+        if (AreaOf(face) >= kNoNormal) return true;
+        position[v.idx()] = old;
+      }
+    }
+  }
+  return false;
+}
+
 // The dense mesh may bring faces without area along that no cheap collapse came
 // across.
 void Collapser::Impl::RemoveFlatFaces() {
   active = kInner | kBorder;
   for (const auto face : kernel.faces()) {
     if (kernel.status(face).deleted() || AreaOf(face) >= kNoNormal) continue;
-    if (!CollapseSideOf(face)) FlipSideOf(face);
+    if (!CollapseSideOf(face) && !FlipSideOf(face)) NudgeCornerOf(face);
   }
 }
 

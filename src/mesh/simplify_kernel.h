@@ -77,6 +77,8 @@ struct Collapser::Impl {
   void RemoveFlatFaces();
   bool CollapseSideOf(OpenMesh::FaceHandle face);
   bool FlipSideOf(OpenMesh::FaceHandle face);
+  bool NudgeCornerOf(OpenMesh::FaceHandle face);
+  bool MayMove(VertexHandle v, const Eigen::Vector3d& target) const;
   double AreaOf(OpenMesh::FaceHandle face) const;
   void Requeue(VertexHandle kept);
   void CountRing(HalfedgeHandle h, int sign);
