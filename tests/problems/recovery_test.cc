@@ -31,6 +31,9 @@ TEST(Recovery, AlternationFindsPosesAndPlanes) {
   ReconState state;
   EnergyWeights weights;
   const TinyScene scene = PerturbedScene(&state, &weights);
+  // The prior is centred at the wrong poses, and on so small a scene it weighs
+  // as much as the texture; three walls hold the gauge without it.
+  weights.pose_prior = false;
   const StateError start = CompareToTruth(scene, state);
   SolverConfig config;
   config.trace_rms_grey = false;
@@ -46,8 +49,6 @@ TEST(Recovery, AlternationFindsPosesAndPlanes) {
     }
   }
   const StateError end = CompareToTruth(scene, state);
-  RecordProperty("rotation_ratio",
-                 std::to_string(start.rotation_rad / end.rotation_rad));
   EXPECT_LT(energy.Objective(), 0.6 * first);
   EXPECT_LT(end.rotation_rad, start.rotation_rad / 4);
   EXPECT_LT(end.center_m, start.center_m / 4);
