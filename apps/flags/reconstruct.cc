@@ -4,8 +4,12 @@
 
 #include <gflags/gflags.h>
 
+#include <limits>
+
 #include "apps/flags/keyframes.h"
+#include "apps/flags/limits.h"
 #include "apps/flags/sequence.h"
+#include "apps/init_app.h"
 #include "util/errors.h"
 
 using facet::AtlasOptions;
@@ -149,6 +153,10 @@ DEFINE_string(gauge,
               "what holds the model in place: prior (on every pose) or none");
 DEFINE_double(gauge_sigma_mm, 10, "prior: standard deviation of a camera [mm]");
 DEFINE_double(gauge_sigma_deg, 0.3, "prior: standard deviation of a rotation");
+DEFINE_double(gauge_strength,
+              EnergyWeights().prior_strength,
+              "prior: its energy when all cameras are one sigma away, as a share "
+              "of the initial E_c");
 DEFINE_string(plane,
               "anchored",
               "plane parameters: anchored (S2 x R about the centroid) or raw4 "
@@ -212,6 +220,52 @@ void Require(bool holds, const std::string& sentence) {
   if (!holds) throw OptionsError(sentence);
 }
 
+void CheckNumbers() {
+  constexpr double kMax = std::numeric_limits<double>::max();
+  CheckFlagLimits({
+      {"threads", 0, 4096},
+      {"partition_clusters", 1},
+      {"partition_max_rms", 0},
+      {"merge_max_normal_deg", 0, 180, true},
+      {"merge_max_distance", 0, kMax, true},
+      {"merge_min_sheet_deg", 0, 90, false, true},
+      {"merge_max_rms", 0},
+      {"merge_max_drift", 0},
+      {"simplify_faces", 0},
+      {"simplify_faces_per_m2", 0, kMax, true},
+      {"simplify_inner_target", 0},
+      {"simplify_border_ratio", 0, 1, true},
+      {"simplify_passes", 1, 100},
+      {"texel_size", 0.0001, 0.1},
+      {"atlas_page_size", 64, 32768},
+      {"texel_stride", 0, 1000},
+      {"max_observations", 1},
+      {"max_angle_deg", 0, 90, true, true},
+      {"image_margin", 0},
+      {"min_views", 2},  // one view has no residual
+      {"stop_decrease", 0},
+      {"smoothing", 0, 100},
+      {"warp_columns", 2, 100},
+      {"warp_rows", 2, 100},
+      {"lambda2", 0, kMax, true},
+      {"gauge_sigma_mm", 0, kMax, true},
+      {"gauge_sigma_deg", 0, kMax, true},
+      {"gauge_strength", 0, kMax, true},
+      {"pose_iterations", 1, 10000},
+      {"plane_iterations", 1, 10000},
+      {"joint_iterations", 1, 10000},
+      {"lambda3", 0},
+      {"geometry_iterations", 1, 10000},
+      {"geometry_band", 0, kMax, true},
+      {"bake_angle_power", 0, 100},
+      {"bake_depth_power", 0, 100},
+      {"bake_sharpness_power", 0, 100},
+      {"bake_best_view_power", 0, 1000, true},
+      {"bake_robust_passes", 0, 100},
+      {"bake_robust_luma", 0, kMax, true},
+  });
+}
+
 void MeshOptions(ReconstructOptions* o) {
   o->partition.target_clusters = FLAGS_partition_clusters;
   o->partition.max_rms_m = FLAGS_partition_max_rms;
@@ -237,10 +291,6 @@ void MeshOptions(ReconstructOptions* o) {
 }
 
 void TextureOptions(ReconstructOptions* o) {
-  Require(FLAGS_texel_size >= 1e-4 && FLAGS_texel_size <= 0.1,
-          "--texel_size must be between 0.0001 and 0.1 m");
-  Require(FLAGS_texel_stride >= 0, "--texel_stride must not be negative");
-  Require(FLAGS_max_observations > 0, "--max_observations must be positive");
   o->atlas.texel_size_m = FLAGS_texel_size;
   o->atlas.page_size = FLAGS_atlas_page_size;
   o->photometric.stride = FLAGS_texel_stride;
@@ -256,8 +306,6 @@ void TextureOptions(ReconstructOptions* o) {
   v.test_depth_edges = FLAGS_test_depth_edges;
   v.image_margin_px = FLAGS_image_margin;
   v.min_views = FLAGS_min_views;
-  Require(v.min_views >= 2,
-          "--min_views must be at least 2: one view has no residual");
   BakeOptions& b = o->bake;
   b.angle_power = FLAGS_bake_angle_power;
   b.depth_power = FLAGS_bake_depth_power;
@@ -278,13 +326,9 @@ void SolverOptions(ReconstructOptions* o) {
   p.smoothing_sigma_px = FLAGS_smoothing;
   p.warp_columns = FLAGS_warp_columns;
   p.warp_rows = FLAGS_warp_rows;
-  Require(p.warp_columns >= 2 && p.warp_rows >= 2,
-          "--warp_columns and --warp_rows must be at least 2");
-  Require(FLAGS_lambda2 > 0, "--lambda2 must be positive");
   p.weights.lambda2 = FLAGS_lambda2;
   p.weights.pose_prior = Choose("gauge", FLAGS_gauge, {"prior", "none"}) == 0;
-  Require(FLAGS_gauge_sigma_mm > 0 && FLAGS_gauge_sigma_deg > 0,
-          "--gauge_sigma_mm and --gauge_sigma_deg must be positive");
+  p.weights.prior_strength = FLAGS_gauge_strength;
   p.weights.prior.translation_m = 1e-3 * FLAGS_gauge_sigma_mm;
   p.weights.prior.rotation_rad =
       FLAGS_gauge_sigma_deg * 3.14159265358979323846 / 180;
@@ -292,10 +336,6 @@ void SolverOptions(ReconstructOptions* o) {
       Choose("plane", FLAGS_plane, {"anchored", "raw4"}) == 0
           ? PlaneStep::kAnchored
           : PlaneStep::kRaw4;
-  Require(FLAGS_pose_iterations > 0 && FLAGS_plane_iterations > 0 &&
-              FLAGS_joint_iterations > 0,
-          "--pose_iterations, --plane_iterations and --joint_iterations must "
-          "be positive");
   p.solver.max_pose_iterations = FLAGS_pose_iterations;
   p.solver.max_plane_iterations = FLAGS_plane_iterations;
   p.solver.max_joint_iterations = FLAGS_joint_iterations;
@@ -324,7 +364,8 @@ ReconstructOptions ReconstructOptionsFromFlags() {
   o.to_stage = ParseStage("to_stage", FLAGS_to_stage);
   o.seed = FLAGS_seed;
   o.previews = FLAGS_previews;
-  o.flags_text = gflags::CommandlineFlagsIntoString();
+  o.flags_text = FlagsText();
+  CheckNumbers();
   o.sequence = SequenceOptionsFromFlags();
   o.keyframes = KeyframeOptionsFromFlags();
   MeshOptions(&o);

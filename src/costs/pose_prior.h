@@ -6,12 +6,12 @@
 //
 //   E_prior = sum_i | W (T_i T_i0^-1 - identity) |^2
 //
-// Residual    (omega / sigma_r, tau / sigma_t), scaled by sigma_I    6
+// Residual    scale (omega / sigma_r, tau / sigma_t)                 6
 //             omega  rotation vector of R_i R_i0^T          [rad]
 //             tau    translation of T_i T_i0^-1             [m]
 // Parameters  pose cam_from_world (layout of se3_manifold.h)         7
-// sigma_I makes the term commensurable with squared intensities, which are
-// not divided by their noise variance.
+// The scale makes the term commensurable with squared intensities, which are
+// not divided by their noise variance (problems/energy.h: InitialPriorScale).
 #pragma once
 
 #include <ceres/autodiff_cost_function.h>
@@ -24,7 +24,7 @@ namespace facet {
 struct PosePriorSigmas {
   double rotation_rad = 0.3 * 3.14159265358979 / 180;
   double translation_m = 0.01;
-  double intensity = 0.05;
+  double scale = 1;  // [intensity]
 };
 
 class PosePriorCost {
@@ -32,8 +32,8 @@ class PosePriorCost {
   PosePriorCost(const Pose& initial_cam_from_world,
                 const PosePriorSigmas& sigmas)
       : world_from_initial_(initial_cam_from_world.Inverse()),
-        rotation_weight_(sigmas.intensity / sigmas.rotation_rad),
-        translation_weight_(sigmas.intensity / sigmas.translation_m) {}
+        rotation_weight_(sigmas.scale / sigmas.rotation_rad),
+        translation_weight_(sigmas.scale / sigmas.translation_m) {}
 
   template <typename T>
   bool operator()(const T* pose, T* residual) const {

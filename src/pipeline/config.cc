@@ -82,7 +82,7 @@ json PhotometricSettings(const ReconstructOptions& o) {
           {"pose_prior", p.weights.pose_prior},
           {"prior_rotation_rad", p.weights.prior.rotation_rad},
           {"prior_translation_m", p.weights.prior.translation_m},
-          {"prior_intensity", p.weights.prior.intensity},
+          {"prior_strength", p.weights.prior_strength},
           {"image_margin_px", v.image_margin_px},
           {"test_occlusion", v.test_occlusion},
           {"test_sensor_depth", v.test_sensor_depth},
@@ -97,6 +97,8 @@ json PhotometricSettings(const ReconstructOptions& o) {
 json GeometrySettings(const ReconstructOptions& o) {
   return {{"lambda3", o.geometry.lambda3},
           {"iterations", o.geometry.iterations},
+          {"freedom", static_cast<int>(o.geometry.freedom)},
+          {"band_m", o.geometry.band_m},
           {"max_move_m", o.geometry.max_move_m}};
 }
 

@@ -159,6 +159,7 @@ PhotometricResult RunPhotometricStage(
   weights.texel_weight = result.stride * result.stride;
   weights.lambda1 = InitialLambda1(problem, weights, state);
   result.lambda1 = weights.lambda1;
+  weights.prior.scale = InitialPriorScale(problem, weights, state);
 
   print("  round  phase            E_c   lambda1 E_p   lambda2 E_s        E_tex"
         "   E_prior  rms grey  result    wall s");

@@ -126,4 +126,12 @@ double InitialLambda1(const TextureProblem& problem,
   return terms.e_c / std::max(terms.e_p, floor);
 }
 
+double InitialPriorScale(const TextureProblem& problem,
+                         const EnergyWeights& weights,
+                         const ReconState& initial_state) {
+  const EnergyTerms terms = EvaluateEnergy(problem, weights, initial_state);
+  return std::sqrt(weights.prior_strength * terms.e_c /
+                   std::max(1, problem.NumKeyframes()));
+}
+
 }  // namespace facet

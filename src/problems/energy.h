@@ -27,6 +27,9 @@ struct EnergyWeights {
   double lambda2 = 0.1;    // paper
   double texel_weight = 1;  // stride^2
   bool pose_prior = true;
+  // E_prior when every keyframe is displaced by one sigma, as a share of the
+  // initial E_c; turned into prior.scale by InitialPriorScale.
+  double prior_strength = 0.05;
   PosePriorSigmas prior;
 };
 
@@ -60,5 +63,12 @@ double EvaluatePosePrior(const TextureProblem& problem,
 double InitialLambda1(const TextureProblem& problem,
                       const EnergyWeights& weights,
                       const ReconState& initial_state);
+
+// PosePriorSigmas::scale = sqrt(prior_strength E_c / keyframes) at the initial
+// state: like lambda1 a balance of the start, so that the prior means the same
+// for any number of texels and keyframes.
+double InitialPriorScale(const TextureProblem& problem,
+                         const EnergyWeights& weights,
+                         const ReconState& initial_state);
 
 }  // namespace facet

@@ -59,21 +59,25 @@ TileView ViewAt(const Eigen::Vector3d& q,
   return view;
 }
 
-// T from the mean gradients of the tile's texels.
+// T from the mean gradients of the tile's texels and the views' own ones.
 Eigen::Matrix2f ConsensusTensor(const TextureProblem& problem,
                                 const TexelTile& tile,
-                                const TileSamples& samples) {
+                                const TileSamples& samples,
+                                double own_share) {
   std::vector<Eigen::Vector2d> mean(tile.texel_end - tile.texel_begin,
                                     Eigen::Vector2d::Zero());
-  ForEachSample(problem, tile, samples, [&](size_t, size_t texel, size_t i) {
-    mean[texel] += Eigen::Vector2d(samples.g1[i], samples.g2[i]);
-  });
   Eigen::Matrix2d tensor = Eigen::Matrix2d::Zero();
+  ForEachSample(problem, tile, samples, [&](size_t, size_t texel, size_t i) {
+    const Eigen::Vector2d g(samples.g1[i], samples.g2[i]);
+    mean[texel] += g;
+    tensor += own_share / problem.views[tile.texel_begin + texel] * g *
+              g.transpose();
+  });
   for (size_t i = 0; i < mean.size(); ++i) {
     const double views = problem.views[tile.texel_begin + i];
     if (views == 0) continue;
     const Eigen::Vector2d g = mean[i] / views;
-    tensor += g * g.transpose();
+    tensor += (1 - own_share) * g * g.transpose();
   }
   return tensor.cast<float>();
 }
@@ -137,7 +141,8 @@ size_t TexelsSeen(const TextureProblem& problem, const TexelTile& tile) {
 
 JointPass RunJointPass(const TextureProblem& problem,
                        const ReconState& state,
-                       bool with_derivatives) {
+                       bool with_derivatives,
+                       double own_share) {
   std::vector<float> warps;
   const std::vector<PhotoFrame> frames =
       MakePhotoFrames(problem, state, false, &warps);
@@ -174,7 +179,7 @@ JointPass RunJointPass(const TextureProblem& problem,
       squares[t] += r * r;
     });
     if (!with_derivatives || tile.segment_begin == tile.segment_end) return;
-    pass.tensors[t] = ConsensusTensor(problem, tile, samples);
+    pass.tensors[t] = ConsensusTensor(problem, tile, samples, own_share);
     const Eigen::Vector3d center = TileCenter(tile, points);
     const Eigen::Vector3d anchor = problem.anchors[tile.plane] - problem.origin;
     const float seen = static_cast<float>(TexelsSeen(problem, tile));

@@ -10,14 +10,15 @@
 // built from a consensus tensor: all views see the same texture, so the mean
 // texture gradient gbar(p) stands for every view's own, noisy one:
 //
-//   T = sum_p gbar gbar^T                                      2 x 2
+//   T = sum_p (1 - eta) gbar gbar^T + eta mean_i(g_i g_i^T)    2 x 2
 //   H = sum_i c_i B_i^T T B_i - kappa / sum(c) (sum c_i B_i)^T T (sum c_i B_i)
 //
 // where B_i maps increments of pose i and of the plane to the shift of the
 // texture under that view at the tile's centre [m], and c_i is the share of the
 // tile's texels that keyframe i sees. Motions common to all views cost nothing,
 // as in the true energy (kappa slightly below 1 keeps H definite). H is positive
-// semi-definite by construction.
+// semi-definite by construction. The share eta of the views' own tensors keeps H
+// up where misaligned views average the texture away.
 #pragma once
 
 #include <Eigen/Core>
@@ -45,8 +46,10 @@ struct JointPass {
   std::vector<Eigen::Matrix2f> tensors;          // T by tile
 };
 
+// `own_share` is eta in [0, 1].
 JointPass RunJointPass(const TextureProblem& problem,
                        const ReconState& state,
-                       bool with_derivatives);
+                       bool with_derivatives,
+                       double own_share);
 
 }  // namespace facet

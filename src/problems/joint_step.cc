@@ -7,12 +7,12 @@
 #include <ceres/problem.h>
 #include <ceres/sized_cost_function.h>
 #include <ceres/solver.h>
+#include <glog/logging.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "costs/plane_manifold.h"
-#include "costs/plane_moment.h"
 #include "costs/se3_manifold.h"
 #include "problems/color_step.h"
 #include "problems/joint_pass.h"
@@ -30,13 +30,13 @@ class JointEvaluation : public ceres::EvaluationCallback {
  public:
   JointEvaluation(const TextureProblem& problem,
                   const EnergyWeights& weights,
+                  const SolverConfig& config,
                   bool with_planes,
-                  double common_share,
                   const ReconState* state)
       : problem_(problem),
         weights_(weights),
+        config_(config),
         with_planes_(with_planes),
-        common_share_(common_share),
         state_(state) {}
 
   void PrepareForEvaluation(bool evaluate_jacobians,
@@ -45,15 +45,15 @@ class JointEvaluation : public ceres::EvaluationCallback {
     if (evaluate_jacobians && !has_system_) {
       ComputeSystem();
     } else if (!has_cost_) {
-      squares_ = RunJointPass(problem_, *state_, false).squares;
-      has_cost_ = true;
+      SetCost(RunJointPass(problem_, *state_, false, 0).squares);
     }
     use_system_ = evaluate_jacobians;
+    // An approximate Hessian may explain more than there is: a constant added
+    // to the cost keeps the last row real.
+    if (reserve_ == 0) reserve_ = cost_ + 10 * system_.explained;
   }
 
-  // Constant added to the cost so that the last row never becomes imaginary:
-  // an approximate Hessian may explain more than there is.
-  void set_reserve(double reserve) { reserve_ = reserve; }
+  double reserve() const { return reserve_; }
 
   bool use_system() const { return use_system_; }
   const JointSystem& system() const { return system_; }
@@ -63,8 +63,8 @@ class JointEvaluation : public ceres::EvaluationCallback {
   const PoseLift& lift(size_t keyframe) const { return lift_[keyframe]; }
 
   double RestResidual() const {
-    const double total = weights_.texel_weight * squares_ + reserve_;
-    const double rest = total - (use_system_ ? system_.explained : 0.0);
+    const double rest =
+        cost_ + reserve_ - (use_system_ ? system_.explained : 0.0);
     return rest > 0 ? std::sqrt(rest) : 0.0;
   }
 
@@ -81,19 +81,34 @@ class JointEvaluation : public ceres::EvaluationCallback {
     for (int k = 0; k < problem_.NumKeyframes(); ++k) {
       lift_.push_back(LeftPoseLift(state_->poses.data() + kPoseSize * k));
     }
-    const JointPass pass = RunJointPass(problem_, *state_, true);
-    squares_ = pass.squares;
-    system_ = FactorJointSystem(problem_, pass, basis_, weights_.texel_weight,
-                                common_share_);
-    has_cost_ = has_system_ = true;
+    const JointPass pass =
+        RunJointPass(problem_, *state_, true, config_.joint_own_share);
+    system_ = FactorJointSystem(problem_, pass, *state_, basis_,
+                                weights_.texel_weight,
+                                weights_.texel_weight * weights_.lambda1,
+                                config_.joint_common_share);
+    SetCost(pass.squares);
+    has_system_ = true;
+  }
+
+  // weighted E_c, and with planes lambda1 E_p.
+  void SetCost(double squares) {
+    cost_ = weights_.texel_weight * squares;
+    for (int j = 0; with_planes_ && j < problem_.NumPlanes(); ++j) {
+      const Eigen::Map<const Eigen::Vector4d> phi(state_->planes.data() +
+                                                  kPlaneSize * j);
+      cost_ += weights_.texel_weight * weights_.lambda1 *
+               phi.dot(problem_.moments[j] * phi);
+    }
+    has_cost_ = true;
   }
 
   const TextureProblem& problem_;
   const EnergyWeights& weights_;
+  const SolverConfig& config_;
   bool with_planes_;
-  double common_share_;
   const ReconState* state_;
-  double squares_ = 0, reserve_ = 0;
+  double cost_ = 0, reserve_ = 0;
   bool has_cost_ = false, has_system_ = false, use_system_ = false;
   JointSystem system_;
   std::vector<Eigen::Matrix<double, 4, 3>> basis_;
@@ -240,10 +255,6 @@ void AddBlocks(const TextureProblem& problem,
     ceres_problem->AddResidualBlock(
         new PlaneRowsCost(evaluation, j, static_cast<int>(keyframes.size())),
         nullptr, parameters);
-    ceres_problem->AddResidualBlock(
-        new PlaneMomentCost(problem.moments[j],
-                            weights.texel_weight * weights.lambda1),
-        nullptr, plane);
     ceres_problem->SetManifold(plane, new AnchoredPlaneManifold);
   }
 }
@@ -258,10 +269,7 @@ void SolveJoint(const TextureProblem& problem,
                 ReconState* state,
                 PhaseSummary* summary) {
   const bool with_planes = (blocks & kPlanes) != 0;
-  JointEvaluation evaluation(problem, weights, with_planes,
-                             config.joint_common_share, state);
-  evaluation.set_reserve(
-      weights.texel_weight * RunJointPass(problem, *state, false).squares);
+  JointEvaluation evaluation(problem, weights, config, with_planes, state);
   ceres::Problem::Options problem_options;
   problem_options.evaluation_callback = &evaluation;
   ceres::Problem ceres_problem(problem_options);
@@ -277,9 +285,17 @@ void SolveJoint(const TextureProblem& problem,
   options.max_trust_region_radius = config.max_joint_radius;
   options.logging_type = ceres::SILENT;
   options.num_threads = 1;  // the pass is parallel itself, in fixed order
-  options.function_tolerance = 1e-5;
+  options.function_tolerance = 1e-9;  // of a cost with the reserve in it
   ceres::Solver::Summary solved;
   ceres::Solve(options, &ceres_problem, &solved);
+  VLOG(2) << solved.FullReport();
+  for (const ceres::IterationSummary& it : solved.iterations) {
+    VLOG(1) << "joint: cost " << it.cost - 0.5 * evaluation.reserve()
+            << " change " << it.cost_change << " rho " << it.relative_decrease
+            << " radius " << it.trust_region_radius << " linear iterations "
+            << it.linear_solver_iterations << " valid " << it.step_is_valid
+            << " accepted " << it.step_is_successful;
+  }
   summary->problems = 1;
   summary->iterations = static_cast<int>(solved.iterations.size());
   if (!solved.iterations.empty()) {

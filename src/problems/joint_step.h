@@ -7,8 +7,8 @@
 // One Ceres problem over all poses (left SE(3)) and planes (S^2 x R). Its E_c
 // rows come from one pass over the observations an evaluation
 // (problems/joint_pass.h, joint_system.h): exact cost and gradient with
-// re-averaged colours, consensus-tensor Hessian. E_p and the pose prior are
-// ordinary residual blocks.
+// re-averaged colours, consensus-tensor Hessian; lambda1 E_p is part of it. The
+// pose prior is an ordinary residual block.
 #pragma once
 
 #include "problems/solve_blocks.h"

@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
+#include "costs/plane_manifold.h"
 #include "util/parallel_for.h"
 
 namespace facet {
@@ -168,8 +169,10 @@ Eigen::MatrixXd UpperFactor(const Eigen::MatrixXd& upper) {
 
 JointSystem FactorJointSystem(const TextureProblem& problem,
                               const JointPass& pass,
+                              const ReconState& state,
                               const std::vector<PlaneBasis>& plane_basis,
                               double weight,
+                              double plane_weight,
                               double common_share) {
   const int num_keyframes = problem.NumKeyframes();
   std::vector<double> share_sum(problem.tiles.size(), 0.0);
@@ -195,13 +198,20 @@ JointSystem FactorJointSystem(const TextureProblem& problem,
   system.planes.resize(plane_basis.size());
   ParallelFor(0, plane_basis.size(), [&](size_t j) {
     JointPlaneRows& rows = system.planes[j];
+    const Eigen::Matrix4d moment = plane_weight * problem.moments[j];
+    const Eigen::Map<const Eigen::Vector4d> phi(state.planes.data() +
+                                                kPlaneSize * j);
+    blocks.plane_plane[j] +=
+        plane_basis[j].transpose() * moment * plane_basis[j];
+    const Eigen::Vector3d plane_gradient =
+        plane_basis[j].transpose() *
+        (weight * pass.plane_gradient[j] + moment * phi);
     ShiftDiagonal(&blocks.plane_plane[j]);
     rows.diagonal = UpperFactor(blocks.plane_plane[j]);
     const auto lower = rows.diagonal.transpose().triangularView<Eigen::Lower>();
     rows.keyframes = std::move(blocks.plane_keyframes[j]);
     rows.poses = lower.solve(blocks.plane_pose[j]);
-    rows.residual = lower.solve(Eigen::Vector3d(
-        weight * plane_basis[j].transpose() * pass.plane_gradient[j]));
+    rows.residual = lower.solve(plane_gradient);
   });
   SubtractPlanes(system, num_keyframes, &blocks.pose_pose);
   for (const JointPlaneRows& rows : system.planes) {

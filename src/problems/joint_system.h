@@ -32,13 +32,17 @@ struct JointSystem {
 };
 
 // `plane_basis`: 4 x 3 PlusJacobian of each plane's manifold, or empty to keep
-// planes fixed. `weight` multiplies H and g (texel area weight); the residual is
-// for sqrt-weighted rows. `common_share` is kappa of joint_pass.h.
+// planes fixed. `weight` multiplies H and g of E_c (texel area weight). With
+// planes, lambda1 E_p is part of the system (`plane_weight` times its moments):
+// alone, E_c leaves planes without texture undetermined. `common_share` is kappa
+// of joint_pass.h.
 JointSystem FactorJointSystem(
     const TextureProblem& problem,
     const JointPass& pass,
+    const ReconState& state,
     const std::vector<Eigen::Matrix<double, 4, 3>>& plane_basis,
     double weight,
+    double plane_weight,
     double common_share);
 
 }  // namespace facet

@@ -39,10 +39,11 @@ struct SolverConfig {
   int max_plane_iterations = 3;
   int max_pose_iterations = 5;
   PlaneStep plane_step = PlaneStep::kAnchored;
-  // Joint solve: kappa of problems/joint_pass.h and the largest trust-region
-  // radius, which together with the pose prior holds soft gauge directions.
+  // Joint solve: kappa and eta of problems/joint_pass.h, and the largest
+  // trust-region radius, which with the pose prior holds soft gauge directions.
   int max_joint_iterations = 5;
   double joint_common_share = 0.99;
+  double joint_own_share = 0.1;
   double max_joint_radius = 1e5;
   // Limits of one solve (method, Sec. 7.5): a longer step is scaled down.
   double max_rotation_rad = 2.0 * 3.14159265358979 / 180;

@@ -1,0 +1,169 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+
+#include "costs/plane_manifold.h"
+#include "costs/se3_manifold.h"
+#include "problems/color_step.h"
+#include "problems/joint_pass.h"
+#include "problems/joint_system.h"
+#include "problems/solve_blocks.h"
+#include "tests/support/tiny_scene.h"
+
+namespace facet {
+namespace {
+
+constexpr unsigned kJoint = kColors | kPlanes | kPoses;
+
+class JointStep : public testing::Test {
+ protected:
+  JointStep() : scene_(MakeTinyScene()), state_(scene_.truth) {
+    PerturbPoses(0.003, 0.004, 1, &state_);
+    PerturbPlanes(0.003, 0.003, 2, &state_);
+    weights_ = StartFrom(&state_, &scene_.problem);
+  }
+
+  std::vector<Eigen::Matrix<double, 4, 3>> PlaneBases() const {
+    std::vector<Eigen::Matrix<double, 4, 3>> bases;
+    for (int j = 0; j < scene_.problem.NumPlanes(); ++j) {
+      Eigen::Matrix<double, 4, 3, Eigen::RowMajor> p;
+      AnchoredPlaneManifold().PlusJacobian(
+          state_.planes.data() + kPlaneSize * j, p.data());
+      bases.push_back(p);
+    }
+    return bases;
+  }
+
+  TinyScene scene_;
+  ReconState state_;
+  EnergyWeights weights_;
+};
+
+// Breaks when a view's force, moment or plane row has a wrong sign or frame, or
+// when colours are not re-averaged (the mean's own derivative cancels).
+TEST_F(JointStep, GradientIsThatOfTheReaveragedCost) {
+  const JointPass pass = RunJointPass(scene_.problem, state_, true, 0.1);
+  const auto squares = [&](const ReconState& s) {
+    return RunJointPass(scene_.problem, s, false, 0).squares;
+  };
+  const double h = 2e-5;
+  Eigen::VectorXd analytic, numeric;
+  const auto compare = [&](double a, double n) {
+    analytic.conservativeResize(analytic.size() + 1);
+    numeric.conservativeResize(numeric.size() + 1);
+    analytic[analytic.size() - 1] = a;
+    numeric[numeric.size() - 1] = n;
+  };
+  for (int k = 0; k < scene_.problem.NumKeyframes(); ++k) {
+    for (int i = 0; i < 6; ++i) {
+      double value[2];
+      for (int side = 0; side < 2; ++side) {
+        ReconState moved = state_;
+        Vector6d xi = Vector6d::Zero();
+        xi[i] = side == 0 ? h : -h;
+        LeftSe3Manifold().Plus(state_.poses.data() + kPoseSize * k, xi.data(),
+                               moved.poses.data() + kPoseSize * k);
+        value[side] = squares(moved);
+      }
+      compare(2 * pass.pose_gradient[k][i], (value[0] - value[1]) / (2 * h));
+    }
+  }
+  const auto bases = PlaneBases();
+  for (int j = 0; j < scene_.problem.NumPlanes(); ++j) {
+    const Eigen::Vector3d tangent =
+        bases[j].transpose() * pass.plane_gradient[j];
+    for (int i = 0; i < 3; ++i) {
+      double value[2];
+      for (int side = 0; side < 2; ++side) {
+        ReconState moved = state_;
+        Eigen::Vector3d delta = Eigen::Vector3d::Zero();
+        delta[i] = side == 0 ? h : -h;
+        AnchoredPlaneManifold().Plus(state_.planes.data() + kPlaneSize * j,
+                                     delta.data(),
+                                     moved.planes.data() + kPlaneSize * j);
+        value[side] = squares(moved);
+      }
+      compare(2 * tangent[i], (value[0] - value[1]) / (2 * h));
+    }
+  }
+  // Bilinear kinks: about 1 % on single entries.
+  EXPECT_LT((analytic - numeric).norm(), 0.02 * numeric.norm())
+      << "analytic " << analytic.transpose() << "\nnumeric "
+      << numeric.transpose();
+}
+
+// Breaks when blocks of R belong to other columns than those of the gradient,
+// or planes are eliminated wrongly: R^T r' must give the gradient back.
+TEST_F(JointStep, FactorKeepsTheGradient) {
+  const JointPass pass = RunJointPass(scene_.problem, state_, true, 0.1);
+  const auto bases = PlaneBases();
+  const JointSystem system =
+      FactorJointSystem(scene_.problem, pass, state_, bases, 4.0,
+                                 3.0, 0.99);
+  Eigen::VectorXd poses = system.poses.transpose() * system.pose_residual;
+  double explained = system.pose_residual.squaredNorm();
+  for (size_t j = 0; j < system.planes.size(); ++j) {
+    const JointPlaneRows& rows = system.planes[j];
+    explained += rows.residual.squaredNorm();
+    for (size_t a = 0; a < rows.keyframes.size(); ++a) {
+      poses.segment<6>(6 * rows.keyframes[a]) +=
+          rows.poses.middleCols<6>(6 * a).transpose() * rows.residual;
+    }
+    const Eigen::Vector3d g = rows.diagonal.transpose() * rows.residual;
+    const Eigen::Map<const Eigen::Vector4d> phi(state_.planes.data() +
+                                                kPlaneSize * j);
+    const Eigen::Vector3d expected =
+        bases[j].transpose() * (4.0 * pass.plane_gradient[j] +
+                                3.0 * scene_.problem.moments[j] * phi);
+    EXPECT_LT((g - expected).norm(), 1e-8 * (1 + expected.norm()));
+  }
+  for (size_t k = 0; k < pass.pose_gradient.size(); ++k) {
+    EXPECT_LT((poses.segment<6>(6 * k) - 4.0 * pass.pose_gradient[k]).norm(),
+              1e-7 * (1 + pass.pose_gradient[k].norm()));
+  }
+  EXPECT_NEAR(explained, system.explained, 1e-9 * explained);
+}
+
+// Breaks when the step does not go downhill or the trust region gets a cost
+// that is not that of the state.
+TEST_F(JointStep, OnePhaseLowersTheObjectiveMoreThanAnAlternationRound) {
+  const EnergyTerms before =
+      EvaluateEnergy(scene_.problem, weights_, state_);
+  SolverConfig config;
+  SolverMemory memory;
+  ReconState joint = state_;
+  const PhaseSummary summary = SolveBlocks(scene_.problem, weights_, kJoint,
+                                           config, before, &memory, &joint);
+  EXPECT_TRUE(summary.accepted);
+  ReconState alternating = state_;
+  EnergyTerms current = before;
+  for (const unsigned blocks : {kColors, kPlanes, kPoses, kColors}) {
+    current = SolveBlocks(scene_.problem, weights_, blocks, config, current,
+                          &memory, &alternating)
+                  .after;
+  }
+  EXPECT_LT(summary.after.Objective(), current.Objective());
+}
+
+// Breaks when the joint solve stops at a wrong point.
+TEST_F(JointStep, RecoversPosesAndPlanes) {
+  weights_.pose_prior = false;
+  SolverConfig config;
+  SolverMemory memory;
+  const StateError start = CompareToTruth(scene_, state_);
+  EnergyTerms current = EvaluateEnergy(scene_.problem, weights_, state_);
+  for (int round = 0; round < 4; ++round) {
+    current = SolveBlocks(scene_.problem, weights_, kJoint, config, current,
+                          &memory, &state_)
+                  .after;
+  }
+  const StateError end = CompareToTruth(scene_, state_);
+  EXPECT_LT(end.rotation_rad, 0.2 * start.rotation_rad);
+  EXPECT_LT(end.center_m, 0.25 * start.center_m);
+  EXPECT_LT(end.normal_rad, 0.3 * start.normal_rad);
+}
+
+}  // namespace
+}  // namespace facet
