@@ -214,6 +214,11 @@ void EvaluatePlanes(const TexturedMesh& model, ModelReport* report) {
     labelled_file = ReadMesh((folder / "simplified.ply").string());
   }
   const MeshFile truth = ReadMesh(FLAGS_true_mesh);
+  if (truth.face_plane.empty()) {
+    throw InputError(FLAGS_true_mesh +
+                     " has no plane_id for each face: give the labelled mesh "
+                     "that belongs to --true_planes");
+  }
   const std::vector<NumberedPlane> true_planes = ReadPlanes(FLAGS_true_planes);
   const LabelledMesh labelled{&labelled_file.mesh, &labelled_file.face_plane};
   const LabelledMesh labelled_truth{&truth.mesh, &truth.face_plane};

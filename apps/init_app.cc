@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <vector>
 
 #include "util/errors.h"
 
@@ -32,19 +33,22 @@ bool WantsHelp() {
   return false;
 }
 
+int ShowHelp(const char* program) {
+  gflags::ShowUsageWithFlagsRestrict(program, "apps/");
+  return kExitOk;
+}
+
 }  // namespace
 
-std::string RawFlagValue(int argc, char** argv, const std::string& name) {
-  std::string value;
-  for (int i = 1; i < argc; ++i) {
-    const char* arg = argv[i];
-    while (*arg == '-') ++arg;
-    if (std::strncmp(arg, name.c_str(), name.size()) != 0) continue;
-    const char* rest = arg + name.size();
-    if (*rest == '=') value = rest + 1;
-    if (*rest == '\0' && i + 1 < argc) value = argv[i + 1];
+std::string FlagsText() {
+  std::vector<gflags::CommandLineFlagInfo> flags;
+  gflags::GetAllFlags(&flags);
+  std::string text;
+  for (const gflags::CommandLineFlagInfo& flag : flags) {
+    if (flag.filename.find("apps/") == std::string::npos) continue;
+    text += "--" + flag.name + "=" + flag.current_value + "\n";
   }
-  return value;
+  return text;
 }
 
 int RunApp(int argc,
@@ -54,16 +58,19 @@ int RunApp(int argc,
   const std::string program = argv[0];
   gflags::SetUsageMessage(description.usage);
   gflags::SetVersionString(FACET_VERSION);
+  // Progress is read by people and scripts, also through a pipe.
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);
   try {
     if (description.profile_flags) {
-      gflags::ReadFlagsFromString(description.profile_flags(argc, argv),
-                                  argv[0], true);
+      int count = argc;
+      std::vector<char*> copy(argv, argv + argc + 1);
+      char** arguments = copy.data();
+      gflags::ParseCommandLineNonHelpFlags(&count, &arguments, true);
+      if (WantsHelp()) return ShowHelp(argv[0]);
+      gflags::ReadFlagsFromString(description.profile_flags(), argv[0], true);
     }
     gflags::ParseCommandLineNonHelpFlags(&argc, &argv, true);
-    if (WantsHelp()) {
-      gflags::ShowUsageWithFlagsRestrict(argv[0], "apps/");
-      return kExitOk;
-    }
+    if (WantsHelp()) return ShowHelp(argv[0]);
     gflags::HandleCommandLineHelpFlags();
     google::InitGoogleLogging(program.c_str());
     FLAGS_logtostderr = true;

@@ -11,9 +11,10 @@ namespace facet {
 
 struct AppDescription {
   std::string usage;  // what it does, and the typical command line
-  // Text of flags (one --name=value a line) read before the command line, so
-  // that the user's own flags win. Called with the arguments; may be empty.
-  std::function<std::string(int argc, char** argv)> profile_flags;
+  // Text of flags (one --name=value a line) that replace defaults: the user's
+  // own, on the command line or in a --flagfile, win. Called when the flags
+  // have been read once; may be empty.
+  std::function<std::string()> profile_flags;
 };
 
 // Parses the flags, answers --help (exit 0), starts logging, runs `body` and
@@ -24,8 +25,8 @@ int RunApp(int argc,
            const AppDescription& description,
            const std::function<int()>& body);
 
-// The value of --`name` in the raw arguments, before gflags parses them
-// ("" if absent); for profiles.
-std::string RawFlagValue(int argc, char** argv, const std::string& name);
+// The flags of facet's own sources with their values, one --name=value a line,
+// as --flagfile reads them.
+std::string FlagsText();
 
 }  // namespace facet

@@ -13,14 +13,15 @@
 #include "util/resources.h"
 
 DECLARE_int32(threads);
+DECLARE_string(profile);
 
 namespace {
 
 int Main() {
-  facet::SetNumThreads(FLAGS_threads);
   const facet::Stopwatch watch;
   const facet::ReconstructOptions options =
       facet::ReconstructOptionsFromFlags();
+  facet::SetNumThreads(FLAGS_threads);
   const nlohmann::json report = facet::Reconstruct(options);
   char line[300];
   std::snprintf(line, sizeof(line), "done in %.1f s (%.1f CPU s): %s/report.json",
@@ -37,10 +38,6 @@ int main(int argc, char** argv) {
       "Turns an RGB-D scan and its dense mesh into a light, textured mesh of "
       "planes.\n  facet-reconstruct --sequence=SCAN --mesh=DENSE.ply "
       "--output=RUN",
-      [](int n, char** arguments) {
-        const std::string profile =
-            facet::RawFlagValue(n, arguments, "profile");
-        return facet::ProfileFlags(profile.empty() ? "default" : profile);
-      }};
+      [] { return facet::ProfileFlags(FLAGS_profile); }};
   return facet::RunApp(argc, argv, description, Main);
 }

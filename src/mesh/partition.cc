@@ -22,7 +22,7 @@ void CheckOptions(const TriMesh& mesh, const PartitionOptions& options) {
     throw OptionsError(
         "partition: target_clusters is " +
         std::to_string(options.target_clusters) + " but the mesh has only " +
-        std::to_string(mesh.NumFaces()) + " faces; ask for fewer clusters");
+        std::to_string(mesh.NumFaces()) + " faces; lower --partition_clusters");
   }
   if (!(options.max_rms_m >= 0) || !(options.max_merge_energy >= 0) ||
       !(options.energy.alpha >= 0) || !(options.energy.tau >= 0) ||

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/export_stage.h"
 
+#include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 
 #include "mesh/mesh_checks.h"
@@ -113,9 +114,14 @@ TexturedMesh Bake(const ReconstructOptions& options,
 }
 
 void WriteMasks(const ReconstructOptions& options, const BakeReport& report) {
+  const auto name = [&](size_t page) {
+    return options.output_path + "/texture_" + std::to_string(page) +
+           "_unseen.png";
+  };
+  size_t stale = report.unseen_mask.size();  // of a larger model before
+  while (std::filesystem::remove(name(stale))) ++stale;
   for (size_t page = 0; page < report.unseen_mask.size(); ++page) {
-    const std::string path = options.output_path + "/texture_" +
-                             std::to_string(page) + "_unseen.png";
+    const std::string path = name(page);
     WriteFileAtomically(path, [&](const std::string& temporary_path) {
       if (!cv::imwrite(temporary_path, report.unseen_mask[page])) {
         throw InputError("cannot write " + path);

@@ -36,8 +36,8 @@ class Run {
   explicit Run(const ReconstructOptions& options) : options_(options) {}
 
   json Execute() {
-    PrepareFolder();
-    ParseSchedule(options_.photometric.schedule);  // fail before the work
+    CheckFolder();
+    CheckSchedule(ParseSchedule(options_.photometric.schedule));
     sequence_ = OpenSequence(options_.sequence_path, options_.sequence);
     report_["stages"] = json::array();
     RunPartition();
@@ -53,7 +53,8 @@ class Run {
   bool Wanted(Stage stage) const { return stage <= options_.to_stage; }
   bool FromFile(Stage stage) const { return stage < options_.from_stage; }
 
-  void PrepareFolder() {
+  // What can be refused is refused before the work starts.
+  void CheckFolder() const {
     if (options_.from_stage > options_.to_stage) {
       throw OptionsError("--from_stage comes after --to_stage");
     }
@@ -64,8 +65,26 @@ class Run {
                          " is not empty: give another folder, --overwrite, or "
                          "go on in it with --from_stage");
     }
+  }
+
+  // Called when all input is read and accepted: a refused command leaves the
+  // run folder as it was. The report of an earlier run would contradict the
+  // files to come.
+  void BeginWriting() {
+    if (writing_) return;
+    writing_ = true;
     WriteFileAtomically(options_.output_path + "/flags.txt",
                         options_.flags_text);
+    std::error_code ignored;
+    fs::remove(options_.output_path + "/report.json", ignored);
+  }
+
+  CleanReport Clean() {
+    try {
+      return CleanMesh(options_.clean, &dense_.mesh);
+    } catch (const InputError& e) {
+      throw InputError(options_.mesh_path + ": " + e.what());
+    }
   }
 
   void RunPartition() {
@@ -79,8 +98,9 @@ class Run {
     dense_.mesh = std::move(file.mesh);
     const size_t faces = dense_.mesh.NumFaces();
     const size_t vertices = dense_.mesh.NumVertices();
-    const CleanReport cleaned = CleanMesh(options_.clean, &dense_.mesh);
+    const CleanReport cleaned = Clean();
     const SplitReport split = SplitNonManifold(&dense_.mesh);
+    BeginWriting();
     if (split.non_manifold_edges + split.split_vertices > 0) {
       AddWarning(Format("%s: opened %zu non-manifold edges and split %zu "
                         "non-manifold vertices",
@@ -117,6 +137,7 @@ class Run {
       stages_.push_back(clock.Finish("read"));
       return;
     }
+    BeginWriting();
     SimplifyResult result =
         SimplifyByPlanes(dense_.mesh, dense_.partition, options_.simplify);
     simplified_.mesh = std::move(result.mesh);
@@ -152,6 +173,7 @@ class Run {
       stages_.push_back(clock.Finish("read"));
       return;
     }
+    BeginWriting();
     keyframes_.keyframes =
         SelectKeyframes(*sequence_, options_.keyframes, &keyframes_.blur);
     size_t usable = 0, held_out = 0;
@@ -196,6 +218,7 @@ class Run {
       stages_.push_back(clock.Finish("read"));
       return;
     }
+    BeginWriting();
     LoadForTexture();
     const PhotometricResult result = RunPhotometricStage(
         simplified_.mesh, simplified_.partition, initial_planes_, atlas_,
@@ -209,6 +232,7 @@ class Run {
     photometric_.lattice = result.lattice;
     photometric_.plane_texels = result.plane_texels;
     photometric_.plane_frames = result.plane_frames;
+    WarnIfDepthDisagrees(result.visibility);
     const RigidMotion slide =
         CommonMotion(initial_poses_, result.cam_from_world);
     photometric_.report = PhotometricReport(result, slide);
@@ -219,6 +243,19 @@ class Run {
         result.initial.rms_grey, result.final_terms.rms_grey, slide.mm)));
   }
 
+  // Some chance agreement lets a scan in a wrong convention through; its model
+  // would be a black one.
+  static void WarnIfDepthDisagrees(const VisibilityCounts& v) {
+    const size_t agreeing = v.used + v.occluded + v.too_few_views;
+    const size_t others = v.depth_disagrees + v.depth_missing;
+    if (agreeing >= 0.15 * static_cast<double>(agreeing + others)) return;
+    AddWarning(Format("the sensor depth agrees with the mesh at only %.0f %% of "
+                      "the texels in the images: poses, depth unit or "
+                      "extrinsics may be wrong, run facet-check-input",
+                      100.0 * static_cast<double>(agreeing) /
+                          static_cast<double>(agreeing + others)));
+  }
+
   void RunGeometry() {
     StageClock clock("geometry");
     if (FromFile(Stage::kGeometry)) {
@@ -226,6 +263,7 @@ class Run {
       stages_.push_back(clock.Finish("read"));
       return;
     }
+    BeginWriting();
     geometry_.mesh = simplified_.mesh;
     const GeometrySummary summary =
         FitGeometry(simplified_.partition, photometric_.planes,
@@ -241,6 +279,7 @@ class Run {
 
   void RunExport() {
     StageClock clock("export");
+    BeginWriting();
     LoadForTexture();
     const ExportInput input = {
         *sequence_,      dense_,       simplified_,   keyframes_.keyframes,
@@ -288,6 +327,7 @@ class Run {
   std::vector<Plane> initial_planes_;
   KeyframeImages images_;
   Atlas atlas_;
+  bool writing_ = false;
   json stages_ = json::array(), export_report_, report_ = json::object();
 };
 

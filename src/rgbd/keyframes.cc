@@ -42,11 +42,41 @@ void ReportUnreadable(const std::vector<std::string>& problems, size_t tried) {
     if (!problem.empty() && count++ == 0) first = problem;
   }
   if (count == 0) return;
-  const std::string sentence =
-      std::to_string(count) + " of " + std::to_string(tried) +
-      " colour images cannot be read, the first: " + first;
+  const std::string sentence = std::to_string(count) + " of " +
+                               std::to_string(tried) +
+                               " frames cannot be read, the first: " + first;
   if (count > kMaxUnreadableShare * tried) throw InputError(sentence);
   AddWarning(sentence + ": skipped");
+}
+
+// The sharpest candidate with a blur in every window.
+std::vector<int> SharpestInWindows(const std::vector<Frame>& frames,
+                                   const std::vector<int>& candidates,
+                                   const std::vector<double>& blurs,
+                                   int window_size) {
+  std::vector<int> keyframes;
+  int last_window = -1;
+  for (const int i : candidates) {
+    if (std::isnan(blurs[i])) continue;
+    const int window = frames[i].number / window_size;
+    if (window != last_window) {
+      keyframes.push_back(i);
+      last_window = window;
+    } else if (blurs[i] < blurs[keyframes.back()]) {
+      keyframes.back() = i;
+    }
+  }
+  return keyframes;
+}
+
+// Why the depth image cannot be used; "" if it can.
+std::string DepthProblem(const RgbdSequence& sequence, int frame_idx) {
+  try {
+    sequence.LoadDepth(frame_idx);
+    return "";
+  } catch (const InputError& e) {
+    return e.what();
+  }
 }
 
 }  // namespace
@@ -80,20 +110,31 @@ std::vector<int> SelectKeyframes(const RgbdSequence& sequence,
     }
     progress.Add();
   });
-  ReportUnreadable(problems, candidates.size());
 
+  // The next sharpest steps in for a keyframe whose depth cannot be read. Only
+  // keyframes need depth: each is decoded once.
   std::vector<int> keyframes;
-  int last_window = -1;
-  for (const int i : candidates) {
-    if (std::isnan(blurs[i])) continue;
-    const int window = frames[i].number / options.window;
-    if (window != last_window) {
-      keyframes.push_back(i);
-      last_window = window;
-    } else if (blurs[i] < blurs[keyframes.back()]) {
-      keyframes.back() = i;
+  std::vector<bool> depth_read(frames.size(), false);
+  for (bool complete = false; !complete;) {
+    keyframes = SharpestInWindows(frames, candidates, blurs, options.window);
+    std::vector<int> unread;
+    for (const int k : keyframes) {
+      if (!depth_read[k]) unread.push_back(k);
+    }
+    std::vector<std::string> depth_problems(unread.size());
+    ParallelFor(0, unread.size(), [&](size_t i) {
+      depth_problems[i] = DepthProblem(sequence, unread[i]);
+    });
+    complete = true;
+    for (size_t i = 0; i < unread.size(); ++i) {
+      depth_read[unread[i]] = true;
+      if (depth_problems[i].empty()) continue;
+      problems.push_back(depth_problems[i]);
+      blurs[unread[i]] = std::numeric_limits<double>::quiet_NaN();
+      complete = false;
     }
   }
+  ReportUnreadable(problems, candidates.size());
   if (keyframes.empty()) {
     throw UnsolvableError(
         "no keyframe in '" + sequence.path() +

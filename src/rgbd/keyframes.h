@@ -25,8 +25,10 @@ bool IsHeldOut(int frame_number, const KeyframeOptions& options);
 
 // Indices into sequence.frames(), ascending. Usable frames only; ties go to the
 // lower number. `blur`, if given, receives the Crete blur of every frame read
-// (NaN for others), by frame index. Images that do not decode are skipped and
-// counted in a warning. Throws UnsolvableError if no keyframe remains.
+// (NaN for others), by frame index. Frames whose colour, or whose depth as a
+// keyframe, does not decode are skipped and counted in a warning. Throws
+// InputError if these are more than 20 %, UnsolvableError if no keyframe
+// remains.
 std::vector<int> SelectKeyframes(const RgbdSequence& sequence,
                                  const KeyframeOptions& options,
                                  std::vector<double>* blur = nullptr);

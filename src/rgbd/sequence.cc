@@ -29,7 +29,7 @@ std::unique_ptr<RgbdSequence> OpenSequence(const std::string& path,
   if (!(options.min_depth_m >= 0 &&
         options.min_depth_m < options.max_depth_m)) {
     throw OptionsError(
-        "the depth range must satisfy 0 <= min_depth < max_depth");
+        "the depth range must satisfy 0 <= --min_depth < --max_depth");
   }
   if (!std::filesystem::is_directory(path)) {
     throw InputError("sequence folder '" + path +

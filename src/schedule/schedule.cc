@@ -111,6 +111,27 @@ class Parser {
 
 Schedule ParseSchedule(const std::string& text) { return Parser(text).Parse(); }
 
+void CheckSchedule(const Schedule& schedule) {
+  for (const ScheduleGroup& group : schedule) {
+    for (const unsigned blocks : group.phases) {
+      switch (blocks) {
+        case kColors:
+        case kPlanes:
+        case kPoses:
+        case kWarps:
+        case kPoses | kWarps:
+        case kColors | kPoses:
+        case kColors | kPlanes | kPoses:
+          continue;
+        default:
+          throw OptionsError("--schedule: the blocks " + BlockSetName(blocks) +
+                             " cannot be solved together; use C, Phi, T, F, "
+                             "T+F, C+T or C+Phi+T");
+      }
+    }
+  }
+}
+
 std::string ToString(const Schedule& schedule) {
   std::string text;
   for (const ScheduleGroup& group : schedule) {

@@ -26,6 +26,10 @@ using Schedule = std::vector<ScheduleGroup>;
 // Throws OptionsError that points at the character and lists what is possible.
 Schedule ParseSchedule(const std::string& text);
 
+// Throws OptionsError if a phase frees blocks that SolveBlocks cannot solve
+// together (problems/solve_blocks.h), so that a run fails at its start.
+void CheckSchedule(const Schedule& schedule);
+
 // Canonical text; ParseSchedule(ToString(s)) gives s back.
 std::string ToString(const Schedule& schedule);
 

@@ -26,7 +26,8 @@ void CheckOptions(const SynthOptions& o) {
   if (o.supersampling < 1 || o.supersampling > 8) {
     throw OptionsError("supersampling must be between 1 and 8");
   }
-  if (o.pose_noise_mm < 0 || o.pose_noise_deg < 0 || o.color_noise_grey < 0) {
+  if (!(o.pose_noise_mm >= 0) || !(o.pose_noise_deg >= 0) ||
+      !(o.color_noise_grey >= 0)) {
     throw OptionsError("noise must not be negative");
   }
 }

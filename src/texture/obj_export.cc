@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "texture/obj_export.h"
 
+#include <filesystem>
+
 #include <algorithm>
 #include <cstdio>
 
@@ -87,6 +89,9 @@ void ExportObj(const std::string& dir, const TexturedMesh& model) {
     WriteFileAtomically(dir + "/mesh.mtl", MtlText(model.pages.size()));
   }
   WriteFileAtomically(dir + "/mesh.obj", ObjText(model));
+  // Pages of a larger model that was here before.
+  size_t stale = model.face_uv.empty() ? 0 : model.pages.size();
+  while (std::filesystem::remove(dir + "/" + TextureName(stale))) ++stale;
 }
 
 }  // namespace facet
