@@ -209,8 +209,11 @@ PhotometricArtefact LoadPhotometricArtefact(const ReconstructOptions& options) {
   PhotometricArtefact artefact;
   const std::vector<double> poses = reader.Get<double>("poses");
   for (size_t k = 0; k < poses.size() / kPoseSize; ++k) {
-    artefact.cam_from_world.push_back(
-        PoseFromBlock(poses.data() + kPoseSize * k));
+    const double* block = poses.data() + kPoseSize * k;
+    Pose pose;  // its constructor would normalise again and change bits
+    pose.rotation.coeffs() = Eigen::Map<const Eigen::Vector4d>(block);
+    pose.translation = Eigen::Map<const Eigen::Vector3d>(block + 4);
+    artefact.cam_from_world.push_back(pose);
   }
   artefact.planes = PlanesFrom(reader.Get<double>("planes"));
   artefact.warps = reader.Get<double>("warps");

@@ -26,18 +26,17 @@ json ToJson(const Eigen::Vector3d& v) {
   return json::array({v.x(), v.y(), v.z()});
 }
 
-// All usable frames: keyframes with their optimised pose, the others carried
-// along with the corrections of their neighbours.
-void WriteRunPoses(const ReconstructOptions& options,
-                   const ExportInput& input) {
-  const RgbdSequence& sequence = input.sequence;
+}  // namespace
+
+std::vector<NumberedPose> RunPoses(const RgbdSequence& sequence,
+                                   const std::vector<int>& keyframes,
+                                   const std::vector<Pose>& cam_from_world) {
   std::vector<int> numbers, usable_keyframes, frame_idx;
   std::vector<Pose> before;
   size_t next = 0;
   for (size_t i = 0; i < sequence.frames().size(); ++i) {
     if (!sequence.frames()[i].usable) continue;
-    if (next < input.keyframes.size() &&
-        input.keyframes[next] == static_cast<int>(i)) {
+    if (next < keyframes.size() && keyframes[next] == static_cast<int>(i)) {
       usable_keyframes.push_back(static_cast<int>(numbers.size()));
       ++next;
     }
@@ -45,13 +44,15 @@ void WriteRunPoses(const ReconstructOptions& options,
     before.push_back(sequence.color_cam_from_world(static_cast<int>(i)));
   }
   const std::vector<Pose> after = PropagateCorrections(
-      numbers, before, usable_keyframes, input.photometric.cam_from_world);
+      numbers, before, usable_keyframes, cam_from_world);
   std::vector<NumberedPose> poses;
   for (size_t i = 0; i < numbers.size(); ++i) {
     poses.push_back({numbers[i], sequence.PoseFileFromColorCam(after[i])});
   }
-  WritePoses(options.output_path + "/poses.txt", poses);
+  return poses;
 }
+
+namespace {
 
 void WritePlanes(const ReconstructOptions& options, const ExportInput& input) {
   const PlanarPartition& partition = input.simplified.partition;
@@ -159,7 +160,9 @@ json ExportRun(const ReconstructOptions& options, const ExportInput& input) {
            &input.dense.partition.face_cluster);
   WritePly(dir + "/simplified.ply", input.simplified.mesh,
            &input.simplified.partition.face_cluster);
-  WriteRunPoses(options, input);
+  WritePoses(dir + "/poses.txt",
+             RunPoses(input.sequence, input.keyframes,
+                      input.photometric.cam_from_world));
   WritePlanes(options, input);
 
   BakeReport bake;

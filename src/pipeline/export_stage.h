@@ -9,6 +9,7 @@
 
 #include "pipeline/artefacts.h"
 #include "pipeline/config.h"
+#include "rgbd/trajectory_io.h"
 #include "texture/atlas.h"
 #include "texture/keyframe_images.h"
 
@@ -27,6 +28,14 @@ struct ExportInput {
   const Atlas& atlas;
   const KeyframeImages& images;
 };
+
+// poses.txt: all usable frames in the convention of the pose files. Keyframes
+// (indices into the sequence's frames, ascending) get their optimised pose
+// `cam_from_world` of the colour camera, the others are carried along with the
+// corrections of their neighbours (PropagateCorrections).
+std::vector<NumberedPose> RunPoses(const RgbdSequence& sequence,
+                                   const std::vector<int>& keyframes,
+                                   const std::vector<Pose>& cam_from_world);
 
 // Writes mesh.obj, mesh.mtl, texture_*.png, mesh.glb, partition.ply,
 // simplified.ply, planes.json, poses.txt, previews/*.png. Returns the stage's
