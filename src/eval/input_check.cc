@@ -19,6 +19,9 @@ constexpr double kSameShift = 0.02;
 constexpr double kClearlyBetter = 1.5;
 // A reading that covers less of the depth is no evidence.
 constexpr double kMinCoverage = 0.02;
+// More faces than this seen from behind and the mesh is inside out. Fused
+// meshes show few, open ones of other programs may be mixed.
+constexpr double kMaxBehindShare = 0.9;
 
 // Subsampled sensor depth of a frame, in the unit of the calibration given.
 struct SampledFrame {
@@ -153,6 +156,29 @@ void AddReadings(const DepthPairs& pairs,
   }
 }
 
+double BehindShare(const RgbdSequence& sequence,
+                   const std::vector<SampledFrame>& frames,
+                   const RayScene& scene,
+                   const TriMesh& mesh,
+                   const InputCheckOptions& options,
+                   const Reading& poses) {
+  const Pinhole camera =
+      EveryNthPixel(sequence.calibration().depth, options.pixel_step);
+  size_t hits = 0, behind = 0;
+  for (const SampledFrame& frame : frames) {
+    const Pose cam_from_world =
+        DepthCamFromWorld(sequence, frame.frame_idx, poses);
+    const Eigen::Vector3d center = cam_from_world.CenterInSource();
+    for (const int f : RenderDepth(scene, camera, cam_from_world).face) {
+      if (f < 0) continue;
+      ++hits;
+      const Eigen::Vector3d view = mesh.FaceCentroid(f) - center;
+      if (mesh.FaceCross(f).dot(view) > 0) ++behind;
+    }
+  }
+  return hits > 0 ? static_cast<double>(behind) / static_cast<double>(hits) : 0;
+}
+
 std::string Percent(double share) {
   char text[32];
   std::snprintf(text, sizeof(text), "%.0f %%", 100 * share);
@@ -271,6 +297,13 @@ InputCheck CheckInput(const RgbdSequence& sequence,
   check.depth_share = static_cast<double>(check.readings[0].depth_pixels) /
                       static_cast<double>(pixels);
   Judge(options, &check);
+  check.behind_share = BehindShare(
+      sequence, frames, scene, mesh, options, check.readings[check.best]);
+  if (check.behind_share > kMaxBehindShare) {
+    check.given_fits = false;
+    check.verdict += " The mesh is inside out (" + Percent(check.behind_share) +
+                     " is seen from behind): reverse the corners of its faces.";
+  }
   return check;
 }
 

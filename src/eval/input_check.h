@@ -49,7 +49,10 @@ struct InputCheck {
   double depth_share = 0;         // pixels with sensor depth, all frames
   std::vector<Reading> readings;  // [0] is the one given
   int best = 0;                   // most agreeing pixels; the given one on ties
-  bool given_fits = false;
+  bool given_fits = false;  // conventions and orientation of the mesh
+  // Share of the mesh's pixels, under the best reading, whose face is seen from
+  // behind: a mesh that is inside out cannot be textured.
+  double behind_share = 0;
   // One sentence: which reading fits and what to change.
   std::string verdict;
 };

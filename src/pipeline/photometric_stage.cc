@@ -75,7 +75,7 @@ void CheckObserved(const Observations& observations,
       text, sizeof(text),
       "no keyframe sees the mesh: of %zu candidate observations of %d "
       "keyframes %zu are behind or too far, %zu outside the image, %zu "
-      "grazing, %zu without depth, %zu at depth edges, %zu contradict the "
+      "grazing or from behind, %zu without depth, %zu at depth edges, %zu contradict the "
       "sensor depth, %zu are occluded, %zu seen too rarely; run "
       "facet-check-input to find the convention that fits",
       c.candidates, num_keyframes, c.behind_or_far, c.outside_image, c.grazing,

@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 #include <sstream>
 
+#include "mesh/mesh_io.h"
 #include "tests/cli/cli_run.h"
 #include "util/atomic_file.h"
 #include "util/errors.h"
@@ -72,6 +73,22 @@ TEST(CliConventions, WrongDepthUnit) {
     const TempDir dir;
     ExpectNotSilent(Reconstruct(dir / "run", {"--sequence=" + scan.path()}));
   }
+}
+
+// All faces turned over: the depth fits, but no texel faces a camera.
+TEST(CliConventions, MeshInsideOut) {
+  const TempDir dir;
+  TriMesh mesh = ReadMesh(Fixture("dense.ply")).mesh;
+  for (auto& face : mesh.faces) std::swap(face[1], face[2]);
+  WritePly(dir / "turned.ply", mesh);
+  ExpectRefused(Reconstruct(dir / "run", {"--mesh=" + dir / "turned.ply"}),
+                kExitUnsolvable,
+                {"from behind", "facet-check-input"});
+  const Outcome check = RunProgram(
+      "check-input",
+      {"--sequence=" + Fixture("scan"), "--mesh=" + dir / "turned.ply"});
+  EXPECT_EQ(check.code, kExitInput);
+  EXPECT_NE(check.out.find("inside out"), std::string::npos) << check.out;
 }
 
 // Millimetres instead of metres: no frame sees the mesh in range.

@@ -155,6 +155,28 @@ TEST(InputCheck, FindsTwoMistakes) {
   EXPECT_NE(check.verdict.find("5000"), std::string::npos);
 }
 
+// Depth is the same from both sides of a surface: only the order of the corners
+// tells that no texel faces a camera.
+TEST(InputCheck, FindsAMeshInsideOut) {
+  TriMesh mesh = Room();
+  mesh.faces.resize(10);  // the room without its block
+  const Eigen::Vector3d inside(0.2, 0, 0.2);
+  for (size_t f = 0; f < mesh.NumFaces(); ++f) {
+    if (mesh.FaceCross(f).dot(mesh.FaceCentroid(f) - inside) < 0) {
+      std::swap(mesh.faces[f][1], mesh.faces[f][2]);
+    }
+  }
+  const FakeSequence scan(mesh);
+  const InputCheck turned = CheckInput(scan, mesh, {});
+  EXPECT_GT(turned.behind_share, 0.99);
+  EXPECT_FALSE(turned.given_fits);
+  EXPECT_NE(turned.verdict.find("inside out"), std::string::npos);
+  for (auto& face : mesh.faces) std::swap(face[1], face[2]);
+  const InputCheck good = CheckInput(scan, mesh, {});
+  EXPECT_LT(good.behind_share, 0.01);
+  EXPECT_TRUE(good.given_fits) << good.verdict;
+}
+
 // A mesh of somewhere else: nothing fits, and that is what it says.
 TEST(InputCheck, ForeignMeshFitsNothing) {
   const TriMesh room = Room();
