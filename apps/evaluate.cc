@@ -93,6 +93,14 @@ void CheckFlags() {
   if (!FLAGS_true_poses.empty() && FLAGS_sequence.empty()) {
     throw OptionsError("--true_poses needs --sequence");
   }
+  if (!FLAGS_dump_images.empty()) {
+    std::error_code error;
+    fs::create_directories(FLAGS_dump_images, error);
+    if (error) {
+      throw InputError("cannot create the folder " + FLAGS_dump_images +
+                       " of --dump_images: " + error.message());
+    }
+  }
 }
 
 // Indices of the frames to evaluate.

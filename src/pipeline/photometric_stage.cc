@@ -70,14 +70,15 @@ void CheckObserved(const Observations& observations,
                    const VisibilityCounts& c,
                    int num_keyframes) {
   if (observations.size() > 0) return;
-  char text[400];
+  char text[700];
   std::snprintf(
       text, sizeof(text),
       "no keyframe sees the mesh: of %zu candidate observations of %d "
       "keyframes %zu are behind or too far, %zu outside the image, %zu "
-      "grazing or from behind, %zu without depth, %zu at depth edges, %zu contradict the "
-      "sensor depth, %zu are occluded, %zu seen too rarely; run "
-      "facet-check-input to find the convention that fits",
+      "grazing or from behind, %zu without depth, %zu at depth edges, %zu "
+      "contradict the sensor depth, %zu are occluded, %zu seen too rarely; run "
+      "facet-check-input to find the convention that fits, or lower "
+      "--keyframe_window where texels are seen too rarely",
       c.candidates, num_keyframes, c.behind_or_far, c.outside_image, c.grazing,
       c.depth_missing, c.depth_edge, c.depth_disagrees, c.occluded,
       c.too_few_views);

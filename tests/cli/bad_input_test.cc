@@ -262,6 +262,22 @@ TEST(CliBadInput, PosesThatAreNotRigid) {
   ExpectNothingIn(dir / "none");
 }
 
+// Frames too far apart to share texels: one view has no residual.
+TEST(CliBadInput, OneFrameIsNotEnough) {
+  const TempDir dir;
+  std::filesystem::create_directory(dir / "scan");
+  for (const char* file : {"info.txt",
+                           "frame-000005.color.jpg",
+                           "frame-000005.depth.png",
+                           "frame-000005.pose.txt"}) {
+    std::filesystem::create_symlink(Fixture("scan") + "/" + file,
+                                    dir / "scan" + "/" + file);
+  }
+  ExpectRefused(Reconstruct(dir / "run", {"--sequence=" + dir / "scan"}),
+                kExitUnsolvable,
+                {"seen too rarely", "--keyframe_window"});
+}
+
 // The message says what stands in the way of how many observations.
 TEST(CliBadInput, MeshThatNoFrameSees) {
   const TempDir dir;

@@ -158,6 +158,20 @@ TEST(CliOptions, OutputCannotBeWritten) {
                             "--output=" + dir / "file/mesh.ply"}),
                 kExitInput,
                 {dir / "file"});
+  ExpectRefused(RunProgram("evaluate",
+                           {"--sequence=" + Fixture("scan"),
+                            "--frames=3",
+                            "--model=" + Fixture("run"),
+                            "--dump_images=" + dir / "file/images"}),
+                kExitInput,
+                {"--dump_images", dir / "file"});
+  ExpectRefused(RunProgram("evaluate",
+                           {"--sequence=" + Fixture("scan"),
+                            "--frames=3",
+                            "--model=" + Fixture("run"),
+                            "--output=" + dir / "file/report.json"}),
+                kExitInput,
+                {dir / "file"});
   EXPECT_EQ(ReadFile(dir / "file"), "a file");
 }
 
