@@ -40,12 +40,13 @@ int ShowHelp(const char* program) {
 
 }  // namespace
 
-std::string FlagsText() {
+std::string FlagsText(const std::set<std::string>& without) {
   std::vector<gflags::CommandLineFlagInfo> flags;
   gflags::GetAllFlags(&flags);
   std::string text;
   for (const gflags::CommandLineFlagInfo& flag : flags) {
     if (flag.filename.find("apps/") == std::string::npos) continue;
+    if (without.count(flag.name) > 0) continue;
     text += "--" + flag.name + "=" + flag.current_value + "\n";
   }
   return text;

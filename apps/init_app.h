@@ -5,6 +5,7 @@
 #pragma once
 
 #include <functional>
+#include <set>
 #include <string>
 
 namespace facet {
@@ -26,7 +27,7 @@ int RunApp(int argc,
            const std::function<int()>& body);
 
 // The flags of facet's own sources with their values, one --name=value a line,
-// as --flagfile reads them.
-std::string FlagsText();
+// as --flagfile reads them; those named in `without` are left out.
+std::string FlagsText(const std::set<std::string>& without = {});
 
 }  // namespace facet

@@ -364,7 +364,8 @@ ReconstructOptions ReconstructOptionsFromFlags() {
   o.to_stage = ParseStage("to_stage", FLAGS_to_stage);
   o.seed = FLAGS_seed;
   o.previews = FLAGS_previews;
-  o.flags_text = FlagsText();
+  // The same model in one go, also when this command goes on in a run folder.
+  o.flags_text = FlagsText({"from_stage", "overwrite"});
   CheckNumbers();
   o.sequence = SequenceOptionsFromFlags();
   o.keyframes = KeyframeOptionsFromFlags();

@@ -96,6 +96,8 @@ json PhotometricSettings(const ReconstructOptions& o) {
 
 json GeometrySettings(const ReconstructOptions& o) {
   return {{"lambda3", o.geometry.lambda3},
+          {"freedom", static_cast<int>(o.geometry.freedom)},
+          {"band_m", o.geometry.band_m},
           {"iterations", o.geometry.iterations},
           {"freedom", static_cast<int>(o.geometry.freedom)},
           {"band_m", o.geometry.band_m},

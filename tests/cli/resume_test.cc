@@ -67,6 +67,17 @@ TEST(CliResume, StageByStage) {
   EXPECT_EQ(report["energy"], ReadJson(Fixture("run/report.json"))["energy"]);
 }
 
+// flags.txt of a resumed run makes the same model elsewhere, in one go.
+TEST(CliResume, FlagsFileOfAResumedRun) {
+  const RunCopy run;
+  ExpectSuccess(Reconstruct(run.path(), {"--from_stage=export"}));
+  const TempDir dir;
+  ExpectSuccess(RunProgram("reconstruct",
+                           {"--flagfile=" + run.path() + "/flags.txt",
+                            "--output=" + dir / "again"}));
+  ExpectSameModel(dir / "again");
+}
+
 // Changing an option of a stage that is not run again is refused, naming it and
 // the stage to start from; the folder stays as it is. Breaks if an option is
 // forgotten in StageSettings.
