@@ -99,8 +99,6 @@ json GeometrySettings(const ReconstructOptions& o) {
           {"freedom", static_cast<int>(o.geometry.freedom)},
           {"band_m", o.geometry.band_m},
           {"iterations", o.geometry.iterations},
-          {"freedom", static_cast<int>(o.geometry.freedom)},
-          {"band_m", o.geometry.band_m},
           {"max_move_m", o.geometry.max_move_m}};
 }
 
