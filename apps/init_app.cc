@@ -5,9 +5,12 @@
 #include <gflags/gflags.h>
 #include <glog/logging.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <fstream>
+#include <sstream>
 #include <vector>
 
 #include "util/errors.h"
@@ -31,6 +34,49 @@ bool WantsHelp() {
     }
   }
   return false;
+}
+
+bool IsFlag(const std::string& name) {
+  gflags::CommandLineFlagInfo info;
+  if (gflags::GetCommandLineFlagInfo(name.c_str(), &info)) return true;
+  return name.compare(0, 2, "no") == 0 &&
+         gflags::GetCommandLineFlagInfo(name.c_str() + 2, &info) &&
+         info.type == "bool";
+}
+
+// gflags skips unknown flags of flag files: a typing error would be silent.
+void CheckFlagFile(const std::string& path) {
+  std::ifstream in(path);
+  std::string line;
+  for (int number = 1; std::getline(in, line); ++number) {
+    const size_t begin = line.find_first_not_of(" \t");
+    if (begin == std::string::npos || line[begin] == '#') continue;
+    if (line[begin] != '-') return;  // flags of named programs from here on
+    const size_t name = line.find_first_not_of('-', begin);
+    if (name == std::string::npos) continue;
+    const size_t end = line.find_first_of("= \t\r", name);
+    const std::string flag = line.substr(name, end - name);
+    if (IsFlag(flag)) continue;
+    throw OptionsError(path + ", line " + std::to_string(number) +
+                       ": unknown flag '" + flag + "', see --help");
+  }
+}
+
+// Checks the files of every --flagfile=A,B or --flagfile A,B.
+void CheckFlagFiles(int argc, char** argv) {
+  const std::string name = "flagfile";
+  for (int i = 1; i < argc; ++i) {
+    std::string arg = argv[i];
+    arg.erase(0, std::min(arg.find_first_not_of('-'), arg.size()));
+    if (arg.compare(0, name.size(), name) != 0) continue;
+    std::string files;
+    if (arg.size() == name.size() && i + 1 < argc) files = argv[i + 1];
+    if (arg.size() > name.size() && arg[name.size()] == '=') {
+      files = arg.substr(name.size() + 1);
+    }
+    std::stringstream list(files);
+    for (std::string file; std::getline(list, file, ',');) CheckFlagFile(file);
+  }
 }
 
 int ShowHelp(const char* program) {
@@ -62,6 +108,7 @@ int RunApp(int argc,
   // Progress is read by people and scripts, also through a pipe.
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
   try {
+    CheckFlagFiles(argc, argv);
     if (description.profile_flags) {
       int count = argc;
       std::vector<char*> copy(argv, argv + argc + 1);

@@ -131,6 +131,29 @@ TEST(CliOptions, UnknownFlagsAndValues) {
   ExpectRefused(RunProgram("reconstruct", {"scan"}), kExitOptions, {"'scan'"});
 }
 
+// gflags itself skips what it does not know in a flag file.
+TEST(CliOptions, UnknownFlagsInFlagFiles) {
+  const TempDir dir;
+  WriteFileAtomically(dir / "typo.flags",
+                      "# a comment\n\n--notest_angle\n--texel_sise=0.01\n");
+  ExpectRefused(RunProgram("reconstruct", {"--flagfile=" + dir / "typo.flags"}),
+                kExitOptions,
+                {dir / "typo.flags", "line 4", "'texel_sise'"});
+  ExpectRefused(Reconstruct(dir / "run", {"--flagfile", dir / "typo.flags"}),
+                kExitOptions,
+                {"line 4"});
+  WriteFileAtomically(dir / "value.flags", "--texel_size=big\n");
+  const Outcome value =
+      Reconstruct(dir / "run", {"--flagfile=" + dir / "value.flags"});
+  EXPECT_EQ(value.code, kExitInternal);
+  EXPECT_NE(value.err.find("texel_size"), std::string::npos);
+  const Outcome missing =
+      Reconstruct(dir / "run", {"--flagfile=" + dir / "none.flags"});
+  EXPECT_EQ(missing.code, kExitInternal);
+  EXPECT_NE(missing.err.find(dir / "none.flags"), std::string::npos);
+  ExpectNothingIn(dir / "run");
+}
+
 // A finished run is never overwritten by accident, and stays whole.
 TEST(CliOptions, FullOutputFolder) {
   const TempDir dir;
