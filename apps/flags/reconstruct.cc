@@ -44,9 +44,10 @@ DEFINE_bool(previews, true, "draw previews/*.png");
 DEFINE_int32(partition_clusters,
              PartitionOptions().target_clusters,
              "clusters before merging");
-DEFINE_double(partition_max_rms,
-              PartitionOptions().max_rms_m,
-              "stop merging faces at this rms height of a cluster [m], 0 = off");
+DEFINE_double(
+    partition_max_rms,
+    PartitionOptions().max_rms_m,
+    "stop merging faces at this rms height of a cluster [m], 0 = off");
 DEFINE_bool(merge, MergeOptions().merge_planes, "merge adjacent planes");
 DEFINE_double(merge_max_normal_deg,
               MergeOptions().max_normal_deg,
@@ -67,10 +68,11 @@ DEFINE_double(merge_max_drift,
               "its plane, 0 = off");
 
 // Simplification
-DEFINE_string(simplify_stop,
-              "budget",
-              "budget: cheapest collapse first down to the face budget; counts: "
-              "edge counts as published");
+DEFINE_string(
+    simplify_stop,
+    "budget",
+    "budget: cheapest collapse first down to the face budget; counts: "
+    "edge counts as published");
 DEFINE_int32(simplify_faces,
              SimplifyOptions().target_faces,
              "face budget, 0 = by simplify_faces_per_m2");
@@ -148,15 +150,19 @@ DEFINE_int32(warp_rows,
 DEFINE_double(lambda2,
               EnergyWeights().lambda2,
               "weight of the warp's size E_s (paper: 0.1)");
-DEFINE_string(gauge,
-              "prior",
-              "what holds the model in place: prior (on every pose) or none");
+DEFINE_string(
+    gauge,
+    "mean",
+    "what holds the model in place: mean (the cameras' common motion "
+    "is taken out, and a weak prior on every pose), prior (only that) "
+    "or none (the paper)");
 DEFINE_double(gauge_sigma_mm, 10, "prior: standard deviation of a camera [mm]");
 DEFINE_double(gauge_sigma_deg, 0.3, "prior: standard deviation of a rotation");
-DEFINE_double(gauge_strength,
-              EnergyWeights().prior_strength,
-              "prior: its energy when all cameras are one sigma away, as a share "
-              "of the initial E_c");
+DEFINE_double(
+    gauge_strength,
+    EnergyWeights().prior_strength,
+    "prior: its energy when all cameras are one sigma away, as a share "
+    "of the initial E_c");
 DEFINE_string(plane,
               "anchored",
               "plane parameters: anchored (S2 x R about the centroid) or raw4 "
@@ -172,7 +178,8 @@ DEFINE_int32(joint_iterations,
              "iterations of a joint solve");
 
 // Geometry and colours
-DEFINE_double(lambda3, GeometryOptions().lambda3,
+DEFINE_double(lambda3,
+              GeometryOptions().lambda3,
               "weight of the mesh's smoothness (paper: 1)");
 DEFINE_int32(geometry_iterations,
              GeometryOptions().iterations,
@@ -184,9 +191,11 @@ DEFINE_string(geometry_freedom,
 DEFINE_double(geometry_band,
               GeometryOptions().band_m,
               "band: distances below it are noise [m]");
-DEFINE_double(bake_angle_power, BakeOptions().angle_power,
+DEFINE_double(bake_angle_power,
+              BakeOptions().angle_power,
               "final colours: power of cos(viewing angle)");
-DEFINE_double(bake_depth_power, BakeOptions().depth_power,
+DEFINE_double(bake_depth_power,
+              BakeOptions().depth_power,
               "final colours: power of 1/depth");
 DEFINE_double(bake_sharpness_power,
               BakeOptions().sharpness_power,
@@ -194,9 +203,11 @@ DEFINE_double(bake_sharpness_power,
 DEFINE_double(bake_best_view_power,
               BakeOptions().best_view_power,
               "final colours: power of the whole weight; large = best view");
-DEFINE_int32(bake_robust_passes, BakeOptions().robust_passes,
+DEFINE_int32(bake_robust_passes,
+             BakeOptions().robust_passes,
              "final colours: passes that drop outliers");
-DEFINE_double(bake_robust_luma, BakeOptions().robust_luma,
+DEFINE_double(bake_robust_luma,
+              BakeOptions().robust_luma,
               "final colours: an outlier differs by more (0-1)");
 DEFINE_string(bake_sampler, "bilinear", "final colours: bilinear or bicubic");
 
@@ -313,10 +324,10 @@ void TextureOptions(ReconstructOptions* o) {
   b.best_view_power = FLAGS_bake_best_view_power;
   b.robust_passes = FLAGS_bake_robust_passes;
   b.robust_luma = FLAGS_bake_robust_luma;
-  b.sampler = Choose("bake_sampler", FLAGS_bake_sampler,
-                     {"bilinear", "bicubic"}) == 0
-                  ? BakeSampler::kBilinear
-                  : BakeSampler::kBicubic;
+  b.sampler =
+      Choose("bake_sampler", FLAGS_bake_sampler, {"bilinear", "bicubic"}) == 0
+          ? BakeSampler::kBilinear
+          : BakeSampler::kBicubic;
 }
 
 void SolverOptions(ReconstructOptions* o) {
@@ -327,15 +338,16 @@ void SolverOptions(ReconstructOptions* o) {
   p.warp_columns = FLAGS_warp_columns;
   p.warp_rows = FLAGS_warp_rows;
   p.weights.lambda2 = FLAGS_lambda2;
-  p.weights.pose_prior = Choose("gauge", FLAGS_gauge, {"prior", "none"}) == 0;
+  const int gauge = Choose("gauge", FLAGS_gauge, {"mean", "prior", "none"});
+  p.weights.pose_prior = gauge <= 1;
+  p.solver.remove_common_motion = gauge == 0;
   p.weights.prior_strength = FLAGS_gauge_strength;
   p.weights.prior.translation_m = 1e-3 * FLAGS_gauge_sigma_mm;
   p.weights.prior.rotation_rad =
       FLAGS_gauge_sigma_deg * 3.14159265358979323846 / 180;
-  p.solver.plane_step =
-      Choose("plane", FLAGS_plane, {"anchored", "raw4"}) == 0
-          ? PlaneStep::kAnchored
-          : PlaneStep::kRaw4;
+  p.solver.plane_step = Choose("plane", FLAGS_plane, {"anchored", "raw4"}) == 0
+                            ? PlaneStep::kAnchored
+                            : PlaneStep::kRaw4;
   p.solver.max_pose_iterations = FLAGS_pose_iterations;
   p.solver.max_plane_iterations = FLAGS_plane_iterations;
   p.solver.max_joint_iterations = FLAGS_joint_iterations;

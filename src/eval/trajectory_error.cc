@@ -13,31 +13,11 @@ namespace facet {
 namespace {
 
 constexpr double kRadToDeg = 57.29577951308232;
-constexpr double kAxisLength = 1.0;  // [m]
 
 struct MatchedPose {
   int number = 0;
   Pose estimated, truth;  // world_from_cam
 };
-
-// Rigid alignment of columns, to ~ R from + t.
-Pose Align(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to) {
-  return Pose(Eigen::Matrix4d(Eigen::umeyama(from, to, false)));
-}
-
-Eigen::Matrix3Xd CentersAndAxes(const std::vector<Pose>& cam_from_world) {
-  Eigen::Matrix3Xd points(3, 4 * cam_from_world.size());
-  for (size_t i = 0; i < cam_from_world.size(); ++i) {
-    const Pose world_from_cam = cam_from_world[i].Inverse();
-    points.col(4 * i) = world_from_cam.translation;
-    for (int k = 0; k < 3; ++k) {
-      points.col(4 * i + 1 + k) =
-          world_from_cam *
-          Eigen::Vector3d(kAxisLength * Eigen::Vector3d::Unit(k));
-    }
-  }
-  return points;
-}
 
 std::vector<MatchedPose> Match(const std::vector<NumberedPose>& estimated,
                                const std::vector<NumberedPose>& truth) {
@@ -81,20 +61,6 @@ RelativeError ComparePairs(const std::vector<MatchedPose>& poses, int gap) {
 }
 
 }  // namespace
-
-RigidMotion CommonMotion(const std::vector<Pose>& before,
-                         const std::vector<Pose>& after) {
-  RigidMotion result;
-  if (before.empty()) return result;
-  result.after_from_before =
-      Align(CentersAndAxes(before), CentersAndAxes(after));
-  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
-  for (const Pose& pose : before) centroid += pose.CenterInSource();
-  centroid /= static_cast<double>(before.size());
-  result.mm = 1000 * (result.after_from_before * centroid - centroid).norm();
-  result.deg = RotationAngle(result.after_from_before) * kRadToDeg;
-  return result;
-}
 
 ErrorSummary Summarize(std::vector<double> errors) {
   ErrorSummary summary;
@@ -141,7 +107,7 @@ TrajectoryError CompareTrajectories(const std::vector<NumberedPose>& estimated,
     true_cam.push_back(poses[i].truth.Inverse());
   }
   Pose true_from_estimated;
-  if (poses.size() >= 3) true_from_estimated = Align(from, to);
+  if (poses.size() >= 3) true_from_estimated = AlignPoints(from, to);
   std::vector<double> ate, absolute, rotation;
   for (const MatchedPose& p : poses) {
     const Pose aligned = true_from_estimated * p.estimated;

@@ -1,34 +1,17 @@
 // Copyright (c) 2026 The facet authors
 // SPDX-License-Identifier: MIT
 //
-// Errors of camera trajectories (method, Sec. 11.3; Sturm et al. 2012) and the
-// motion that two trajectories have in common.
+// Errors of camera trajectories (method, Sec. 11.3; Sturm et al. 2012).
 #pragma once
 
 #include <cstddef>
 #include <vector>
 
+#include "geometry/common_motion.h"
 #include "geometry/pose.h"
 #include "rgbd/trajectory_io.h"
 
 namespace facet {
-
-// The rigid motion after_from_before, x' = R x + t in world coordinates, with
-// how far it moves the centroid of the cameras and how far it turns them.
-struct RigidMotion {
-  Pose after_from_before;
-  double mm = 0;
-  double deg = 0;
-};
-
-// Least squares over the camera centres and over points 1 m from them along the
-// three camera axes, so that orientations count as much as positions and one
-// camera alone determines it. This is the "slide" of a model that was optimised
-// without anything that holds the gauge.
-//   before, after  cam_from_world of the same cameras, equally many
-// Without cameras the identity.
-RigidMotion CommonMotion(const std::vector<Pose>& before,
-                         const std::vector<Pose>& after);
 
 struct ErrorSummary {
   double rmse = 0, mean = 0, median = 0, max = 0;  // NaN without values

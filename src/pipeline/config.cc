@@ -33,6 +33,7 @@ json PartitionSettings(const ReconstructOptions& o) {
           {"max_distance_m", o.merge.max_distance_m},
           {"min_sheet_deg", o.merge.min_sheet_deg},
           {"merge_max_rms_m", o.merge.max_rms_m},
+          {"max_member_rms_m", o.merge.max_member_rms_m},
           {"max_drift_factor", o.merge.max_drift_factor},
           {"absorb_islands", o.merge.absorb_islands}};
 }
@@ -51,15 +52,15 @@ json SimplifySettings(const ReconstructOptions& o) {
 }
 
 json KeyframeSettings(const ReconstructOptions& o) {
-  return {{"sequence", o.sequence_path},
-          {"pose_camera", static_cast<int>(o.sequence.pose_camera)},
-          {"extrinsic_direction",
-           static_cast<int>(o.sequence.extrinsic_direction)},
-          {"min_depth_m", o.sequence.min_depth_m},
-          {"max_depth_m", o.sequence.max_depth_m},
-          {"window", o.keyframes.window},
-          {"holdout_stride", o.keyframes.holdout_stride},
-          {"holdout_offset", o.keyframes.holdout_offset}};
+  return {
+      {"sequence", o.sequence_path},
+      {"pose_camera", static_cast<int>(o.sequence.pose_camera)},
+      {"extrinsic_direction", static_cast<int>(o.sequence.extrinsic_direction)},
+      {"min_depth_m", o.sequence.min_depth_m},
+      {"max_depth_m", o.sequence.max_depth_m},
+      {"window", o.keyframes.window},
+      {"holdout_stride", o.keyframes.holdout_stride},
+      {"holdout_offset", o.keyframes.holdout_offset}};
 }
 
 json PhotometricSettings(const ReconstructOptions& o) {
@@ -79,6 +80,7 @@ json PhotometricSettings(const ReconstructOptions& o) {
           {"max_joint_iterations", p.solver.max_joint_iterations},
           {"plane_step", static_cast<int>(p.solver.plane_step)},
           {"lambda2", p.weights.lambda2},
+          {"remove_common_motion", p.solver.remove_common_motion},
           {"pose_prior", p.weights.pose_prior},
           {"prior_rotation_rad", p.weights.prior.rotation_rad},
           {"prior_translation_m", p.weights.prior.translation_m},

@@ -36,7 +36,6 @@ struct ReconstructOptions {
   uint64_t seed = 0;  // nothing of the default pipeline is random
   bool previews = true;
   std::string flags_text;  // written to flags.txt
-  double max_memory_gb = 16;  // refuse jobs estimated above it
 
   SequenceOptions sequence;
   CleanOptions clean;

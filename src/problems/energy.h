@@ -23,13 +23,13 @@
 namespace facet {
 
 struct EnergyWeights {
-  double lambda1 = 0;      // set by InitialLambda1
-  double lambda2 = 0.1;    // paper
+  double lambda1 = 0;       // set by InitialLambda1
+  double lambda2 = 0.1;     // paper
   double texel_weight = 1;  // stride^2
   bool pose_prior = true;
   // E_prior when every keyframe is displaced by one sigma, as a share of the
   // initial E_c; turned into prior.scale by InitialPriorScale.
-  double prior_strength = 0.05;
+  double prior_strength = 0.0005;
   PosePriorSigmas prior;
 };
 
@@ -41,7 +41,7 @@ struct EnergyTerms {
   size_t observations = 0, clamped = 0, behind = 0;
 
   double Objective() const { return e_tex + e_prior; }
-  double RmsIntensity() const;   // sqrt(mean (I - C)^2), smoothed images, 0-1
+  double RmsIntensity() const;  // sqrt(mean (I - C)^2), smoothed images, 0-1
   double ClampedShare() const;
   double texel_weight = 1;
 };

@@ -15,6 +15,7 @@
 #include "costs/plane_manifold.h"
 #include "costs/se3_manifold.h"
 #include "problems/color_step.h"
+#include "problems/gauge.h"
 #include "problems/joint_pass.h"
 #include "problems/joint_system.h"
 
@@ -53,6 +54,12 @@ class JointEvaluation : public ceres::EvaluationCallback {
     if (reserve_ == 0) reserve_ = cost_ + 10 * system_.explained;
   }
 
+  // E_c at the state of the moment, weighted.
+  double InitialCost() const {
+    return weights_.texel_weight *
+           RunJointPass(problem_, *state_, false, 0).squares;
+  }
+
   double reserve() const { return reserve_; }
 
   bool use_system() const { return use_system_; }
@@ -83,7 +90,10 @@ class JointEvaluation : public ceres::EvaluationCallback {
     }
     const JointPass pass =
         RunJointPass(problem_, *state_, true, config_.joint_own_share);
-    system_ = FactorJointSystem(problem_, pass, *state_, basis_,
+    system_ = FactorJointSystem(problem_,
+                                pass,
+                                *state_,
+                                basis_,
                                 weights_.texel_weight,
                                 weights_.texel_weight * weights_.lambda1,
                                 config_.joint_common_share);
@@ -210,9 +220,11 @@ class RestCost : public ceres::SizedCostFunction<1, kPoseSize> {
 std::vector<int> KeyframesOfPlane(const TextureProblem& problem, int plane) {
   std::vector<int> keyframes;
   for (size_t t = problem.plane_tile_begin[plane];
-       t < problem.plane_tile_begin[plane + 1]; ++t) {
+       t < problem.plane_tile_begin[plane + 1];
+       ++t) {
     for (size_t s = problem.tiles[t].segment_begin;
-         s < problem.tiles[t].segment_end; ++s) {
+         s < problem.tiles[t].segment_end;
+         ++s) {
       keyframes.push_back(problem.segments[s].keyframe);
     }
   }
@@ -226,6 +238,7 @@ void AddBlocks(const TextureProblem& problem,
                const EnergyWeights& weights,
                const JointEvaluation& evaluation,
                bool with_planes,
+               bool hold_common_motion,
                ReconState* state,
                ceres::Problem* ceres_problem) {
   const int num_keyframes = problem.NumKeyframes();
@@ -242,10 +255,21 @@ void AddBlocks(const TextureProblem& problem,
       ceres_problem->AddResidualBlock(
           PosePriorCost::Create(problem.initial_cam_from_world[k],
                                 weights.prior),
-          nullptr, pose(k));
+          nullptr,
+          pose(k));
     }
   }
   ceres_problem->AddResidualBlock(new RestCost(evaluation), nullptr, pose(0));
+  if (hold_common_motion) {
+    std::vector<double*> parameters;
+    for (int k = 0; k < num_keyframes; ++k) parameters.push_back(pose(k));
+    // One millimetre of it costs as much as E_c now.
+    ceres_problem->AddResidualBlock(
+        CreateCommonMotionCost(problem.initial_cam_from_world,
+                               1e3 * std::sqrt(evaluation.InitialCost())),
+        nullptr,
+        parameters);
+  }
   for (int j = 0; with_planes && j < problem.NumPlanes(); ++j) {
     const std::vector<int> keyframes = KeyframesOfPlane(problem, j);
     if (keyframes.empty()) continue;
@@ -254,7 +278,8 @@ void AddBlocks(const TextureProblem& problem,
     for (const int k : keyframes) parameters.push_back(pose(k));
     ceres_problem->AddResidualBlock(
         new PlaneRowsCost(evaluation, j, static_cast<int>(keyframes.size())),
-        nullptr, parameters);
+        nullptr,
+        parameters);
     ceres_problem->SetManifold(plane, new AnchoredPlaneManifold);
   }
 }
@@ -273,13 +298,19 @@ void SolveJoint(const TextureProblem& problem,
   ceres::Problem::Options problem_options;
   problem_options.evaluation_callback = &evaluation;
   ceres::Problem ceres_problem(problem_options);
-  AddBlocks(problem, weights, evaluation, with_planes, state, &ceres_problem);
+  AddBlocks(problem,
+            weights,
+            evaluation,
+            with_planes,
+            config.remove_common_motion,
+            state,
+            &ceres_problem);
 
   ceres::Solver::Options options;
-  options.linear_solver_type = ceres::CGNR;
-  options.preconditioner_type = ceres::JACOBI;
-  options.max_linear_solver_iterations = 200;
-  options.eta = 0.03;
+  // R is dense in the poses; planes first costs no fill. (CGNR stops far too
+  // early here: soft common modes matter.)
+  options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  options.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
   options.max_num_iterations = config.max_joint_iterations;
   options.initial_trust_region_radius = memory->joint_radius;
   options.max_trust_region_radius = config.max_joint_radius;
@@ -299,9 +330,10 @@ void SolveJoint(const TextureProblem& problem,
   summary->problems = 1;
   summary->iterations = static_cast<int>(solved.iterations.size());
   if (!solved.iterations.empty()) {
-    memory->joint_radius = std::clamp(
-        solved.iterations.back().trust_region_radius, 1.0,
-        config.max_joint_radius);
+    memory->joint_radius =
+        std::clamp(solved.iterations.back().trust_region_radius,
+                   1.0,
+                   config.max_joint_radius);
   }
   SolveColors(problem, state);
 }

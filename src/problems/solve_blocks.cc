@@ -3,6 +3,7 @@
 #include "problems/solve_blocks.h"
 
 #include "problems/color_step.h"
+#include "problems/gauge.h"
 #include "problems/joint_step.h"
 #include "problems/plane_step.h"
 #include "problems/pose_warp_step.h"
@@ -50,6 +51,11 @@ PhaseSummary SolveBlocks(const TextureProblem& problem,
     throw OptionsError("the blocks " + summary.blocks +
                        " cannot be solved together; use C, Phi, T, F, T+F, "
                        "C+T or C+Phi+T");
+  }
+  const bool joint = (free & kColors) && (free & kPoses);
+  if ((free & kPoses) && !joint && config.remove_common_motion) {
+    RemoveCommonMotion(problem, state);
+    SolveColors(problem, state);
   }
   summary.after =
       EvaluateEnergy(problem, weights, *state, config.trace_rms_grey);

@@ -6,7 +6,8 @@
 //   {C}       closed-form means (problems/color_step.h)
 //   {Phi}     one small Ceres problem a plane, on all threads
 //   {T}, {F}, {T, F}   one Ceres problem a keyframe, on all threads
-//   {C, T}, {C, Phi, T}   one joint Ceres problem (problems/joint_step.h)
+//   {C, T}, {C, Phi, T}   one joint Ceres problem (problems/joint_step.h); with
+//             planes it is experimental: on real scans its steps are too bold
 //
 // A phase that raises the objective E_tex + E_prior is rolled back and marked.
 #pragma once
@@ -36,6 +37,9 @@ enum class PlaneStep {
 };
 
 struct SolverConfig {
+  // After every phase that moves poses, take their common motion since the
+  // start out again and average the colours anew (problems/gauge.h).
+  bool remove_common_motion = true;
   int max_plane_iterations = 3;
   int max_pose_iterations = 5;
   PlaneStep plane_step = PlaneStep::kAnchored;
@@ -66,10 +70,10 @@ struct SolverMemory {
 
 struct PhaseSummary {
   std::string blocks;
-  bool accepted = true;     // false: rolled back
-  int problems = 0;         // Ceres problems solved
-  int iterations = 0;       // summed over them
-  int reverted = 0;         // problems whose result was worse and undone
+  bool accepted = true;  // false: rolled back
+  int problems = 0;      // Ceres problems solved
+  int iterations = 0;    // summed over them
+  int reverted = 0;      // problems whose result was worse and undone
   double wall_s = 0, cpu_s = 0;
   EnergyTerms before, after;
 };

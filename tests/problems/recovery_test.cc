@@ -36,6 +36,7 @@ TEST(Recovery, AlternationFindsPosesAndPlanes) {
   weights.pose_prior = false;
   const StateError start = CompareToTruth(scene, state);
   SolverConfig config;
+  config.remove_common_motion = false;
   config.trace_rms_grey = false;
   SolverMemory memory;
   EnergyTerms energy = EvaluateEnergy(scene.problem, weights, state);
@@ -90,6 +91,7 @@ TEST(Recovery, NoPhaseRaisesTheObjective) {
   EnergyTerms energy = EvaluateEnergy(scene.problem, weights, state);
   for (const PlaneStep plane_step : {PlaneStep::kAnchored, PlaneStep::kRaw4}) {
     SolverConfig config;
+    config.remove_common_motion = false;
     config.plane_step = plane_step;
     for (int round = 0; round < 4; ++round) {
       for (const unsigned blocks : {unsigned{kColors},
@@ -119,6 +121,7 @@ TEST(Recovery, RawPlaneStepGivesPlanes) {
   for (const PlaneStep step : {PlaneStep::kAnchored, PlaneStep::kRaw4}) {
     ReconState state = start;
     SolverConfig config;
+    config.remove_common_motion = false;
     config.plane_step = step;
     SolverMemory memory;
     EnergyTerms energy = EvaluateEnergy(scene.problem, weights, state);
@@ -157,6 +160,7 @@ TEST(Recovery, WarpStepFindsADisplacedImage) {
   weights.lambda2 = 1e-4;
   SolverMemory memory;
   SolverConfig config;
+  config.remove_common_motion = false;
   config.max_pose_iterations = 20;
   const PhaseSummary summary =
       SolveBlocks(displaced.problem,

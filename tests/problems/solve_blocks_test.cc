@@ -88,6 +88,7 @@ TEST(SolveColors, LeavesUnseenTexelsAlone) {
 TEST(SolveBlocks, FirstStepIsThatOfTheReference) {
   const Start start = MakeStart(0.06);
   SolverConfig config;
+  config.remove_common_motion = false;
   config.max_plane_iterations = config.max_pose_iterations = 1;
   const struct {
     unsigned blocks;
@@ -123,7 +124,9 @@ TEST(SolveBlocks, LeavesTheOtherBlocksAlone) {
     ReconState state = start.state;
     std::fill(state.colors.begin(), state.colors.end(), 0.45f);
     const ReconState before = state;
-    const PhaseSummary summary = Solve(start, blocks, {}, &state);
+    SolverConfig config;
+    config.remove_common_motion = false;  // would average the colours again
+    const PhaseSummary summary = Solve(start, blocks, config, &state);
     EXPECT_TRUE(summary.accepted) << summary.blocks;
     EXPECT_EQ(state.colors != before.colors, (blocks & kColors) != 0);
     EXPECT_EQ(state.planes != before.planes, (blocks & kPlanes) != 0);
@@ -141,6 +144,7 @@ TEST(SolveBlocks, PosesAreSolvedUnderTheWarpThatIsThere) {
   const ReconState before = state;
   ReconState expected = state;
   SolverConfig config;
+  config.remove_common_motion = false;
   config.max_pose_iterations = 1;
   EXPECT_TRUE(Solve(start, kPoses, config, &state).accepted);
   EXPECT_EQ(state.warps, before.warps);
@@ -180,6 +184,7 @@ TEST(SolveBlocks, WorseResultIsRolledBackAndMarked) {
 TEST(SolveBlocks, StepsKeepTheLimits) {
   const Start start = MakeStart();
   SolverConfig config;
+  config.remove_common_motion = false;
   config.max_rotation_rad = 2e-4;
   config.max_translation_m = 3e-4;
   config.max_plane_offset_m = 2e-4;
@@ -220,6 +225,7 @@ TEST(SolveBlocks, StepsKeepTheLimits) {
 TEST(SolveBlocks, PoorKeyframesKeepTheirPose) {
   const Start start = MakeStart();
   SolverConfig config;
+  config.remove_common_motion = false;
   config.min_frame_observations = start.scene.problem.observations.size();
   ReconState state = start.state;
   const PhaseSummary summary = Solve(start, kPoses, config, &state);
@@ -237,6 +243,7 @@ TEST(SolveBlocks, SurvivesAKeyframeWithoutObservations) {
   FinishTextureProblem(&p);
   start.weights.pose_prior = false;
   SolverConfig config;
+  config.remove_common_motion = false;
   config.min_frame_observations = 0;
   for (const unsigned blocks : {unsigned{kPoses}, kPoses | kWarps}) {
     ReconState state = start.state;

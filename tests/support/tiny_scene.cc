@@ -225,6 +225,7 @@ EnergyWeights StartFrom(ReconState* state, TextureProblem* problem) {
   SolveColors(*problem, state);
   EnergyWeights weights;
   weights.lambda1 = InitialLambda1(*problem, weights, *state);
+  weights.prior.scale = InitialPriorScale(*problem, weights, *state);
   return weights;
 }
 
