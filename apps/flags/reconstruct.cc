@@ -203,12 +203,10 @@ DEFINE_double(bake_sharpness_power,
 DEFINE_double(bake_best_view_power,
               BakeOptions().best_view_power,
               "final colours: power of the whole weight; large = best view");
-DEFINE_int32(bake_robust_passes,
-             BakeOptions().robust_passes,
-             "final colours: passes that drop outliers");
-DEFINE_double(bake_robust_luma,
-              BakeOptions().robust_luma,
-              "final colours: an outlier differs by more (0-1)");
+DEFINE_double(
+    bake_robust_luma,
+    BakeOptions().robust_luma,
+    "final colours: drop samples this far from the median (0-1), 0 = keep all");
 DEFINE_string(bake_sampler, "bilinear", "final colours: bilinear or bicubic");
 
 namespace facet {
@@ -272,8 +270,7 @@ void CheckNumbers() {
       {"bake_depth_power", 0, 100},
       {"bake_sharpness_power", 0, 100},
       {"bake_best_view_power", 0, 1000, true},
-      {"bake_robust_passes", 0, 100},
-      {"bake_robust_luma", 0, kMax, true},
+      {"bake_robust_luma", 0, kMax},
   });
 }
 
@@ -322,7 +319,6 @@ void TextureOptions(ReconstructOptions* o) {
   b.depth_power = FLAGS_bake_depth_power;
   b.sharpness_power = FLAGS_bake_sharpness_power;
   b.best_view_power = FLAGS_bake_best_view_power;
-  b.robust_passes = FLAGS_bake_robust_passes;
   b.robust_luma = FLAGS_bake_robust_luma;
   b.sampler =
       Choose("bake_sampler", FLAGS_bake_sampler, {"bilinear", "bicubic"}) == 0
@@ -406,7 +402,7 @@ std::string ProfileFlags(const std::string& name) {
          "--bake_depth_power=0\n"
          "--bake_sharpness_power=0\n"
          "--bake_best_view_power=1\n"
-         "--bake_robust_passes=0\n";
+         "--bake_robust_luma=0\n";
 }
 
 }  // namespace facet

@@ -111,7 +111,6 @@ json ExportSettings(const ReconstructOptions& o) {
           {"depth_power", o.bake.depth_power},
           {"sharpness_power", o.bake.sharpness_power},
           {"best_view_power", o.bake.best_view_power},
-          {"robust_passes", o.bake.robust_passes},
           {"robust_luma", o.bake.robust_luma},
           {"sampler", static_cast<int>(o.bake.sampler)},
           {"inpaint", o.bake.inpaint}};

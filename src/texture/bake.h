@@ -10,8 +10,8 @@
 // [m], s = sharpness of the image (1 - Crete blur, relative to the median), f =
 // ramp from 0 at the image border to 1. Plain averages blur (misalignment,
 // motion, distance); e > 1 leans towards the best view, e -> infinity selects
-// it. A robust pass first drops samples whose luma is far from the mean under e
-// = 1: highlights, people, misregistered edges. The defaults are the plain mean
+// it. A robust pass first drops samples whose luma is far from the weighted
+// median: highlights, people, misregistered edges. The defaults are the plain mean
 // of the authors' code but for the ramp: on real scans every weight tried made
 // held-out views match worse (docs/design.md).
 #pragma once
@@ -41,8 +41,8 @@ struct BakeOptions {
   double sharpness_power = 0;     // c >= 0; 0 = do not measure blur
   double best_view_power = 1;     // e > 0; all powers 0 and e 1: plain mean
   double border_feather_px = 40;  // width of the ramp f; 0 = none
-  int robust_passes = 0;          // 0 = keep all samples
-  double robust_luma = 0.10;      // largest |luma - mean|, intensities 0 to 1
+  // Drop samples with a larger |luma - median|, intensities 0 to 1; 0 = keep all.
+  double robust_luma = 0;
   // Texels that no keyframe sees by the tests of VisibilityOptions take colours
   // from those that pass the milder FrameView::MaySee.
   bool mild_fallback = true;

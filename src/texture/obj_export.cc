@@ -42,7 +42,7 @@ std::string ObjText(const TexturedMesh& model) {
   std::string text = "# facet\n";
   if (textured) text += "mtllib mesh.mtl\n";
   for (const auto& v : model.mesh.vertices) {
-    AppendLine(&text, "v %.7g %.7g %.7g\n", v.x(), v.y(), v.z());
+    AppendLine(&text, "v %.10g %.10g %.10g\n", v.x(), v.y(), v.z());
   }
   if (!textured) {
     for (const auto& f : model.mesh.faces) {

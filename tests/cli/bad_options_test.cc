@@ -73,7 +73,7 @@ TEST(CliOptions, NumbersOutOfRange) {
                            "--geometry_band=0",
                            "--bake_angle_power=-1",
                            "--bake_best_view_power=0",
-                           "--bake_robust_passes=-1",
+                           "--bake_robust_luma=-1",
                            "--keyframe_window=0",
                            "--holdout_stride=-1",
                            "--threads=-1"}) {

@@ -181,7 +181,7 @@ TEST(CliReconstruct, FlagsFileReproducesTheRun) {
   ExpectSameModel(dir / "again", Fixture("run"));
 
   ExpectSuccess(Reconstruct(dir / "paper",
-                            {"--profile=paper", "--bake_robust_passes=1"}));
+                            {"--profile=paper", "--bake_robust_luma=0.5"}));
   ExpectSuccess(RunProgram(
       "reconstruct",
       {"--flagfile=" + dir / "paper/flags.txt", "--output=" + dir / "paper2"}));

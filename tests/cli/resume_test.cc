@@ -124,7 +124,7 @@ TEST(CliResume, LaterOptionsMayChange) {
                ReadFile(Fixture("run/mesh.obj")));
   ExpectSuccess(Reconstruct(run.path(),
                             {"--from_stage=export",
-                             "--bake_robust_passes=0",
+                             "--bake_robust_luma=0.1",
                              "--geometry_freedom=none"}));
 }
 

@@ -253,7 +253,7 @@ TEST_F(ArtefactTest, OtherSettingsAreRefusedByName) {
   options_ = good;
   options_.photometric.schedule = "C";
   options_.geometry.lambda3 = 9;
-  options_.bake.robust_passes = 0;
+  options_.bake.robust_luma = 0.5;
   EXPECT_EQ(ErrorOfLoading(Stage::kSimplify), "");
 }
 

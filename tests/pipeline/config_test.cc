@@ -105,7 +105,7 @@ TEST(StageSettings, EveryOptionBelongsToOneStage) {
        [](auto* o) { o->geometry.freedom = PlaneFreedom::kNone; }},
       {Stage::kExport, [](auto* o) { o->atlas.page_size = 512; }},
       {Stage::kExport, [](auto* o) { o->bake.angle_power = 7; }},
-      {Stage::kExport, [](auto* o) { o->bake.robust_passes = 7; }},
+      {Stage::kExport, [](auto* o) { o->bake.robust_luma = 0.7; }},
       {Stage::kExport,
        [](auto* o) { o->bake.sampler = BakeSampler::kBicubic; }},
   };
