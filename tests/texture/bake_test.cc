@@ -208,6 +208,7 @@ TEST(Bake, BestViewPowerPrefersTheNearView) {
   wall.sequence.color(1).setTo(cv::Scalar(120, 120, 120));
   wall.options.robust_luma = 0;
   wall.options.sharpness_power = 0;
+  wall.options.depth_power = 2;
   wall.options.best_view_power = 16;
   const Chart& chart = wall.atlas.charts[0];
   const int x = chart.x + chart.width / 2, y = chart.y + chart.height / 2;
