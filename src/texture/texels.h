@@ -27,7 +27,6 @@ struct TexelSet {
   std::vector<std::array<float, 2>> bary;  // b1, b2; b0 = 1 - b1 - b2
 
   size_t size() const { return position.size(); }
-  size_t MemoryBytes() const { return size() * (12 + 4 + 4 + 8); }
 };
 
 // The texels of all front-facing charts (steep and back ones take no part in
