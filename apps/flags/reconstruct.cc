@@ -6,6 +6,7 @@
 
 #include <limits>
 
+#include "apps/flags/choices.h"
 #include "apps/flags/keyframes.h"
 #include "apps/flags/limits.h"
 #include "apps/flags/sequence.h"
@@ -212,19 +213,6 @@ DEFINE_string(bake_sampler, "bilinear", "final colours: bilinear or bicubic");
 namespace facet {
 namespace {
 
-// The position of `value` among `choices`; throws listing them.
-int Choose(const std::string& flag,
-           const std::string& value,
-           const std::vector<std::string>& choices) {
-  std::string list;
-  for (size_t i = 0; i < choices.size(); ++i) {
-    if (value == choices[i]) return static_cast<int>(i);
-    list += (i > 0 ? ", " : "") + choices[i];
-  }
-  throw OptionsError("--" + flag + "=" + value + " is not possible: use " +
-                     list);
-}
-
 void Require(bool holds, const std::string& sentence) {
   if (!holds) throw OptionsError(sentence);
 }
@@ -283,19 +271,17 @@ void MeshOptions(ReconstructOptions* o) {
   o->merge.min_sheet_deg = FLAGS_merge_min_sheet_deg;
   o->merge.max_rms_m = FLAGS_merge_max_rms;
   o->merge.max_drift_factor = FLAGS_merge_max_drift;
-  o->simplify.stop =
-      Choose("simplify_stop", FLAGS_simplify_stop, {"budget", "counts"}) == 0
-          ? SimplifyStop::kBudget
-          : SimplifyStop::kCounts;
+  o->simplify.stop = Choose("simplify_stop", FLAGS_simplify_stop) == 0
+                         ? SimplifyStop::kBudget
+                         : SimplifyStop::kCounts;
   o->simplify.target_faces = FLAGS_simplify_faces;
   o->simplify.faces_per_m2 = FLAGS_simplify_faces_per_m2;
   o->simplify.inner_target = FLAGS_simplify_inner_target;
   o->simplify.border_ratio = FLAGS_simplify_border_ratio;
   o->simplify.passes = FLAGS_simplify_passes;
-  o->plane_init =
-      Choose("plane_init", FLAGS_plane_init, {"dense", "simplified"}) == 0
-          ? PlaneInit::kDense
-          : PlaneInit::kSimplified;
+  o->plane_init = Choose("plane_init", FLAGS_plane_init) == 0
+                      ? PlaneInit::kDense
+                      : PlaneInit::kSimplified;
 }
 
 void TextureOptions(ReconstructOptions* o) {
@@ -320,10 +306,9 @@ void TextureOptions(ReconstructOptions* o) {
   b.sharpness_power = FLAGS_bake_sharpness_power;
   b.best_view_power = FLAGS_bake_best_view_power;
   b.robust_luma = FLAGS_bake_robust_luma;
-  b.sampler =
-      Choose("bake_sampler", FLAGS_bake_sampler, {"bilinear", "bicubic"}) == 0
-          ? BakeSampler::kBilinear
-          : BakeSampler::kBicubic;
+  b.sampler = Choose("bake_sampler", FLAGS_bake_sampler) == 0
+                  ? BakeSampler::kBilinear
+                  : BakeSampler::kBicubic;
 }
 
 void SolverOptions(ReconstructOptions* o) {
@@ -334,14 +319,14 @@ void SolverOptions(ReconstructOptions* o) {
   p.warp_columns = FLAGS_warp_columns;
   p.warp_rows = FLAGS_warp_rows;
   p.weights.lambda2 = FLAGS_lambda2;
-  const int gauge = Choose("gauge", FLAGS_gauge, {"mean", "prior", "none"});
+  const int gauge = Choose("gauge", FLAGS_gauge);
   p.weights.pose_prior = gauge <= 1;
   p.solver.remove_common_motion = gauge == 0;
   p.weights.prior_strength = FLAGS_gauge_strength;
   p.weights.prior.translation_m = 1e-3 * FLAGS_gauge_sigma_mm;
   p.weights.prior.rotation_rad =
       FLAGS_gauge_sigma_deg * 3.14159265358979323846 / 180;
-  p.solver.plane_step = Choose("plane", FLAGS_plane, {"anchored", "raw4"}) == 0
+  p.solver.plane_step = Choose("plane", FLAGS_plane) == 0
                             ? PlaneStep::kAnchored
                             : PlaneStep::kRaw4;
   p.solver.max_pose_iterations = FLAGS_pose_iterations;
@@ -350,10 +335,9 @@ void SolverOptions(ReconstructOptions* o) {
   o->geometry.lambda3 = FLAGS_lambda3;
   o->geometry.iterations = FLAGS_geometry_iterations;
   o->geometry.band_m = FLAGS_geometry_band;
-  o->geometry.freedom =
-      Choose("geometry_freedom", FLAGS_geometry_freedom, {"band", "none"}) == 0
-          ? PlaneFreedom::kBand
-          : PlaneFreedom::kNone;
+  o->geometry.freedom = Choose("geometry_freedom", FLAGS_geometry_freedom) == 0
+                            ? PlaneFreedom::kBand
+                            : PlaneFreedom::kNone;
 }
 
 }  // namespace
@@ -384,7 +368,7 @@ ReconstructOptions ReconstructOptionsFromFlags() {
 }
 
 std::string ProfileFlags(const std::string& name) {
-  if (Choose("profile", name, {"default", "paper"}) == 0) return "";
+  if (Choose("profile", name) == 0) return "";
   // What the paper says, in the order of its sections (docs/cli.md).
   return "--simplify_stop=counts\n"
          "--merge_max_rms=0\n"

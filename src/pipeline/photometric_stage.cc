@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "problems/color_step.h"
+#include "texture/fingerprint.h"
 #include "texture/visibility.h"
 #include "util/errors.h"
 #include "util/warnings.h"
@@ -137,6 +138,8 @@ PhotometricResult RunPhotometricStage(
                       : ChooseStride(sample, options.max_observations);
   Sampled sampled = sample(result.stride);
   result.texels = sampled.texels.size();
+  result.observation_fingerprint =
+      ObservationFingerprint(sampled.texels, sampled.observations);
   result.visibility = sampled.counts;
 
   TextureProblem problem;

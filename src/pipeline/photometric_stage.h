@@ -47,6 +47,7 @@ struct PhotometricResult {
   double lambda1 = 0;
   int stride = 0;
   size_t texels = 0, texels_observed = 0;
+  std::string observation_fingerprint;  // texture/fingerprint.h
   VisibilityCounts visibility;
   Trace trace;
   std::vector<size_t> plane_texels, plane_frames;  // observed, by plane

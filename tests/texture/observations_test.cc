@@ -9,6 +9,7 @@
 #include "tests/texture/memory_sequence.h"
 #include "tests/texture/texture_scenes.h"
 #include "texture/atlas.h"
+#include "texture/fingerprint.h"
 #include "util/parallel_for.h"
 
 namespace facet {
@@ -217,6 +218,30 @@ TEST(Observations, DepthRangeAndMinViews) {
   EXPECT_GT(s.counts.too_few_views, 0u);
   EXPECT_EQ(s.counts.used + s.counts.too_few_views + s.counts.outside_image,
             s.counts.candidates);
+}
+
+// Breaks if a part of the frozen set is left out of the hash: runs on different
+// observations would then be compared.
+TEST(Observations, FingerprintSeesEveryChange) {
+  Scene s;
+  const Observations o = s.Compute(s.off);
+  const std::string print = ObservationFingerprint(s.texels, o);
+  EXPECT_EQ(print.size(), 16u);
+  EXPECT_EQ(print, ObservationFingerprint(s.texels, s.Compute(s.off)));
+
+  // One keyframe's observation given to its neighbour: ids stay the same.
+  Observations moved = o;
+  ++moved.begin[1];
+  EXPECT_NE(print, ObservationFingerprint(s.texels, moved));
+  Observations other = o;
+  ++other.texel.back();
+  EXPECT_NE(print, ObservationFingerprint(s.texels, other));
+  TexelSet texels = s.texels;
+  texels.position[0].x() += 1e-6f;
+  EXPECT_NE(print, ObservationFingerprint(texels, o));
+  texels = s.texels;
+  ++texels.plane[0];
+  EXPECT_NE(print, ObservationFingerprint(texels, o));
 }
 
 TEST(Observations, SameAtAnyThreadCount) {

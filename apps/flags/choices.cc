@@ -1,0 +1,59 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+#include "apps/flags/choices.h"
+
+#include <glog/logging.h>
+
+#include "util/errors.h"
+
+namespace facet {
+
+const std::vector<FlagChoices>& AllFlagChoices() {
+  static const auto* const kTable = new std::vector<FlagChoices>{
+      {"schedule", {}, true},
+      {"plane", {"anchored", "raw4"}, true},
+      {"gauge", {"mean", "prior", "none"}, true},
+      {"gauge_strength", {}, true},
+      {"lambda2", {}, true},
+      {"smoothing", {}, true},
+      {"warp_columns", {}, true},
+      {"warp_rows", {}, true},
+      {"pose_iterations", {}, true},
+      {"plane_iterations", {}, true},
+      {"joint_iterations", {}, true},
+      {"stop_decrease", {}, true},
+      {"profile", {"default", "paper"}},
+      {"simplify_stop", {"budget", "counts"}},
+      {"plane_init", {"dense", "simplified"}},
+      {"geometry_freedom", {"band", "none"}},
+      {"bake_sampler", {"bilinear", "bicubic"}},
+  };
+  return *kTable;
+}
+
+const FlagChoices* FindFlagChoices(const std::string& flag) {
+  for (const FlagChoices& row : AllFlagChoices()) {
+    if (row.flag == flag) return &row;
+  }
+  return nullptr;
+}
+
+int Choose(const std::string& flag, const std::string& value) {
+  const FlagChoices* row = FindFlagChoices(flag);
+  CHECK(row != nullptr) << "no row for --" << flag << " in choices.cc";
+  for (size_t i = 0; i < row->values.size(); ++i) {
+    if (value == row->values[i]) return static_cast<int>(i);
+  }
+  throw OptionsError("--" + flag + "=" + value + " is not possible: use " +
+                     JoinValues(row->values));
+}
+
+std::string JoinValues(const std::vector<std::string>& values) {
+  std::string text;
+  for (const std::string& value : values) {
+    text += (text.empty() ? "" : ", ") + value;
+  }
+  return text;
+}
+
+}  // namespace facet
