@@ -32,6 +32,7 @@ DEFINE_int32(frames_stride,
              "evaluate frames whose number is frames_offset modulo this; 1 = "
              "all");
 DEFINE_int32(frames_offset, 7, "see frames_stride");
+DEFINE_bool(photos, true, "compare models with the photos of --sequence");
 DEFINE_string(frames,
               "",
               "frame numbers separated by commas, instead of frames_stride");
@@ -185,7 +186,7 @@ void EvaluatePhotosAndPoses(const RgbdSequence& sequence,
   const std::vector<NumberedPose> of_sequence = SequencePoses(sequence);
   const std::vector<NumberedPose> poses =
       pose_file.empty() ? of_sequence : ReadPoses(pose_file);
-  if (HasColor(model)) {
+  if (HasColor(model) && FLAGS_photos) {
     EvaluationOptions options;
     options.dump_prefix = dump_prefix;
     report->photometric =
@@ -193,7 +194,7 @@ void EvaluatePhotosAndPoses(const RgbdSequence& sequence,
                       sequence,
                       FramesWithPoses(sequence, ChooseFrames(sequence), poses),
                       options);
-  } else {
+  } else if (FLAGS_photos) {
     AddWarning("'" + report->model +
                "' has no colours: it is not compared with photos");
   }

@@ -79,8 +79,8 @@ void CheckFlagFiles(int argc, char** argv) {
   }
 }
 
-int ShowHelp(const char* program) {
-  gflags::ShowUsageWithFlagsRestrict(program, "apps/");
+int ShowHelp(const char* program, const AppDescription& description) {
+  gflags::ShowUsageWithFlagsRestrict(program, description.help_filter.c_str());
   return kExitOk;
 }
 
@@ -114,11 +114,11 @@ int RunApp(int argc,
       std::vector<char*> copy(argv, argv + argc + 1);
       char** arguments = copy.data();
       gflags::ParseCommandLineNonHelpFlags(&count, &arguments, true);
-      if (WantsHelp()) return ShowHelp(argv[0]);
+      if (WantsHelp()) return ShowHelp(argv[0], description);
       gflags::ReadFlagsFromString(description.profile_flags(), argv[0], true);
     }
     gflags::ParseCommandLineNonHelpFlags(&argc, &argv, true);
-    if (WantsHelp()) return ShowHelp(argv[0]);
+    if (WantsHelp()) return ShowHelp(argv[0], description);
     gflags::HandleCommandLineHelpFlags();
     google::InitGoogleLogging(program.c_str());
     FLAGS_logtostderr = true;

@@ -16,6 +16,8 @@ struct AppDescription {
   // own, on the command line or in a --flagfile, win. Called when the flags
   // have been read once; may be empty.
   std::function<std::string()> profile_flags;
+  // --help shows the flags of source files whose path contains this.
+  std::string help_filter = "apps/";
 };
 
 // Parses the flags, answers --help (exit 0), starts logging, runs `body` and

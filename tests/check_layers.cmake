@@ -15,8 +15,9 @@ set(may_eval util geometry mesh rgbd render texture eval)
 set(may_synth util geometry mesh rgbd render synth)
 set(may_pipeline util geometry mesh rgbd render texture costs problems schedule
                  eval synth pipeline)
+set(may_ablate util ablate)
 set(layers util geometry mesh rgbd render texture costs problems schedule eval
-           synth pipeline)
+           synth pipeline ablate)
 
 foreach(layer IN LISTS layers)
   file(GLOB_RECURSE sources ${ROOT}/src/${layer}/*.h ${ROOT}/src/${layer}/*.cc)

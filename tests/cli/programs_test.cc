@@ -22,7 +22,8 @@ TEST(CliPrograms, HelpListsTheFlags) {
                    {"fuse", "voxel_size"},
                    {"reconstruct", "schedule"},
                    {"evaluate", "reference_mesh"},
-                   {"check-input", "pose_camera"}};
+                   {"check-input", "pose_camera"},
+                   {"ablate", "vary"}};
   for (const auto& p : kPrograms) {
     const Outcome help = RunProgram(p.program, {"--help"});
     ExpectSuccess(help);

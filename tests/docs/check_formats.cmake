@@ -9,6 +9,7 @@ set(sources
     src/pipeline/report.cc
     src/pipeline/stage_clock.cc
     src/eval/evaluation_report.cc
+    src/ablate/run_result.cc
     apps/evaluate.cc)
 
 file(READ ${ROOT}/docs/formats.md documentation)
