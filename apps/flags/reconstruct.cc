@@ -22,6 +22,7 @@ using facet::PartitionOptions;
 using facet::PhotometricOptions;
 using facet::SimplifyOptions;
 using facet::SolverConfig;
+using facet::TexelOptions;
 using facet::VisibilityOptions;
 
 // Run
@@ -122,6 +123,17 @@ DEFINE_double(max_angle_deg,
 DEFINE_bool(test_depth_edges,
             VisibilityOptions().test_depth_edges,
             "texels must not lie beside jumps of the sensor depth");
+DEFINE_double(edge_margin,
+              TexelOptions().edge_margin_m,
+              "texels of the optimisation keep away from sharp edges of the "
+              "mesh [m], 0 = off");
+DEFINE_bool(test_mesh_edges,
+            VisibilityOptions().test_mesh_edges,
+            "texels must not lie beside places where a surface of the mesh "
+            "ends before another");
+DEFINE_double(occlusion_tolerance,
+              VisibilityOptions().occlusion_tolerance_m,
+              "texels this far behind the mesh still count as seen [m]");
 DEFINE_double(image_margin,
               VisibilityOptions().image_margin_px,
               "texels keep away from the image border [px]");
@@ -288,6 +300,7 @@ void TextureOptions(ReconstructOptions* o) {
   o->atlas.texel_size_m = FLAGS_texel_size;
   o->atlas.page_size = FLAGS_atlas_page_size;
   o->photometric.stride = FLAGS_texel_stride;
+  o->photometric.edge_margin_m = FLAGS_edge_margin;
   o->photometric.max_observations = FLAGS_max_observations;
   VisibilityOptions& v = o->visibility;
   v.min_depth_m = o->sequence.min_depth_m;
@@ -298,6 +311,8 @@ void TextureOptions(ReconstructOptions* o) {
   v.test_angle = FLAGS_test_angle;
   v.max_angle_deg = FLAGS_max_angle_deg;
   v.test_depth_edges = FLAGS_test_depth_edges;
+  v.test_mesh_edges = FLAGS_test_mesh_edges;
+  v.occlusion_tolerance_m = FLAGS_occlusion_tolerance;
   v.image_margin_px = FLAGS_image_margin;
   v.min_views = FLAGS_min_views;
   BakeOptions& b = o->bake;
@@ -377,6 +392,8 @@ std::string ProfileFlags(const std::string& name) {
          "--schedule=10x[C; Phi; T+F]\n"
          "--stop_decrease=0\n"
          "--smoothing=0\n"
+         "--edge_margin=0\n"
+         "--test_mesh_edges=false\n"
          "--gauge=none\n"
          "--plane=raw4\n"
          "--lambda2=0.1\n"

@@ -93,6 +93,9 @@ json PhotometricSettings(const ReconstructOptions& o) {
           {"test_angle", v.test_angle},
           {"max_angle_deg", v.max_angle_deg},
           {"test_depth_edges", v.test_depth_edges},
+          {"edge_margin_m", p.edge_margin_m},
+          {"test_mesh_edges", v.test_mesh_edges},
+          {"occlusion_tolerance_m", v.occlusion_tolerance_m},
           {"min_views", v.min_views}};
 }
 

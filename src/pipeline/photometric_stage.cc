@@ -77,11 +77,12 @@ void CheckObserved(const Observations& observations,
       "no keyframe sees the mesh: of %zu candidate observations of %d "
       "keyframes %zu are behind or too far, %zu outside the image, %zu "
       "grazing or from behind, %zu without depth, %zu at depth edges, %zu "
-      "contradict the sensor depth, %zu are occluded, %zu seen too rarely; run "
+      "contradict the sensor depth, %zu at edges of the mesh, %zu are occluded, "
+      "%zu seen too rarely; run "
       "facet-check-input to find the convention that fits, or lower "
       "--keyframe_window where texels are seen too rarely",
       c.candidates, num_keyframes, c.behind_or_far, c.outside_image, c.grazing,
-      c.depth_missing, c.depth_edge, c.depth_disagrees, c.occluded,
+      c.depth_missing, c.depth_edge, c.depth_disagrees, c.mesh_edge, c.occluded,
       c.too_few_views);
   throw UnsolvableError(text);
 }
@@ -124,7 +125,8 @@ PhotometricResult RunPhotometricStage(
   }
   const auto sample = [&](int stride) {
     Sampled s;
-    s.texels = SampleTexels(mesh, partition, atlas, stride);
+    s.texels = SampleTexels(mesh, partition, atlas,
+                            {stride, options.edge_margin_m});
     s.tiles = SortTexelsIntoTiles(planes, anchors, options.tile_texels,
                                   &s.texels);
     s.observations =

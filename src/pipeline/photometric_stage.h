@@ -27,6 +27,7 @@ struct PhotometricOptions {
   // max_observations. Paper: 1.
   int stride = 0;
   size_t max_observations = 20000000;
+  double edge_margin_m = TexelOptions().edge_margin_m;  // texture/texels.h
   int tile_texels = 16;  // side of the square tiles (SortTexelsIntoTiles)
   double smoothing_sigma_px = 0.8;        // Gaussian on the luma; paper: none
   int warp_columns = 20, warp_rows = 16;  // control vertices (paper)

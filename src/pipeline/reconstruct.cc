@@ -246,7 +246,8 @@ class Run {
   // Some chance agreement lets a scan in a wrong convention through; its model
   // would be a black one.
   static void WarnIfDepthDisagrees(const VisibilityCounts& v) {
-    const size_t agreeing = v.used + v.occluded + v.too_few_views;
+    const size_t agreeing =
+        v.used + v.mesh_edge + v.occluded + v.too_few_views;
     const size_t others = v.depth_disagrees + v.depth_missing;
     if (agreeing >= 0.15 * static_cast<double>(agreeing + others)) return;
     AddWarning(Format("the sensor depth agrees with the mesh at only %.0f %% of "

@@ -57,6 +57,7 @@ json PhotometricReport(const PhotometricResult& result,
             {"depth_missing", v.depth_missing},
             {"depth_edge", v.depth_edge},
             {"depth_disagrees", v.depth_disagrees},
+            {"mesh_edge", v.mesh_edge},
             {"occluded", v.occluded},
             {"too_few_views", v.too_few_views},
             {"used", v.used}}}};

@@ -24,6 +24,13 @@ bool IsJump(float a, float b, float jump_m, float jump_rel) {
   return far - near > std::max(jump_m, jump_rel * near);
 }
 
+void Dilate(int radius_px, cv::Mat* mask) {
+  if (radius_px <= 0) return;
+  const int size = 2 * radius_px + 1;
+  cv::dilate(
+      *mask, *mask, cv::getStructuringElement(cv::MORPH_RECT, {size, size}));
+}
+
 // A depth pixel seen from the colour camera; inverse_z = 0: missing.
 struct WarpedPixel {
   double u = 0, v = 0, inverse_z = 0;
@@ -186,11 +193,43 @@ cv::Mat DepthEdgeMask(const cv::Mat& depth,
       }
     }
   }
-  if (dilate_px > 0) {
-    const int size = 2 * dilate_px + 1;
-    cv::dilate(
-        edges, edges, cv::getStructuringElement(cv::MORPH_RECT, {size, size}));
+  Dilate(dilate_px, &edges);
+  return edges;
+}
+
+cv::Mat SurfaceEdgeMask(const cv::Mat& depth,
+                        double jump_m,
+                        double jump_rel,
+                        int dilate_px) {
+  cv::Mat inverse(depth.size(), CV_32F);
+  for (int y = 0; y < depth.rows; ++y) {
+    for (int x = 0; x < depth.cols; ++x) {
+      const float z = depth.at<float>(y, x);
+      inverse.at<float>(y, x) = z > 0 ? 1 / z : 0;
+    }
   }
+  cv::Mat edges = cv::Mat::zeros(depth.size(), CV_8U);
+  const auto mark = [&](int y, int x, int dy, int dx) {
+    const float* w = &inverse.at<float>(y, x);
+    const ptrdiff_t next = dy * static_cast<ptrdiff_t>(inverse.step1()) + dx;
+    const float near = std::max(w[0], w[next]);
+    if (near == 0) return;
+    const float before = 1.5f * w[0] - 0.5f * w[-next];
+    const float after = 1.5f * w[next] - 0.5f * w[2 * next];
+    // |dz| = z^2 |d(1/z)| at the nearer surface.
+    const float z = 1 / near;
+    const float jump = static_cast<float>(std::max(jump_m, jump_rel * z));
+    if (std::abs(before - after) * z * z > jump) {
+      edges.at<uint8_t>(y, x) = edges.at<uint8_t>(y + dy, x + dx) = 255;
+    }
+  };
+  for (int y = 0; y < depth.rows; ++y) {
+    for (int x = 0; x < depth.cols; ++x) {
+      if (x >= 1 && x + 2 < depth.cols) mark(y, x, 0, 1);
+      if (y >= 1 && y + 2 < depth.rows) mark(y, x, 1, 0);
+    }
+  }
+  Dilate(dilate_px, &edges);
   return edges;
 }
 

@@ -21,6 +21,18 @@ cv::Mat DepthEdgeMask(const cv::Mat& depth,
                       double jump_rel,
                       int dilate_px);
 
+// Pixels within `dilate_px` of a place where a rendered surface breaks off and
+// another one, nearer or farther, goes on: CV_8U 255, else 0. `depth` is a
+// z-buffer without noise (0 = nothing). Unlike DepthEdgeMask this finds steps
+// that are low against the slope of a surface: 1/z is linear in the image of a
+// plane, so it is continued from both sides to the middle between neighbouring
+// pixels; there a crease agrees, and a step of more than max(jump_m,
+// jump_rel z) does not.
+cv::Mat SurfaceEdgeMask(const cv::Mat& depth,
+                        double jump_m,
+                        double jump_rel,
+                        int dilate_px);
+
 // Standard deviation of the axial noise of a structured-light sensor at depth
 // z [m], in metres (Nguyen et al. 2012): 0.0012 + 0.0019 (z - 0.4)^2.
 inline double DepthSigma(double z) {

@@ -131,6 +131,7 @@ Observations ComputeObservations(const TexelSet& texels,
     total.depth_missing += count(Sight::kDepthMissing);
     total.depth_edge += count(Sight::kDepthEdge);
     total.depth_disagrees += count(Sight::kDepthDisagrees);
+    total.mesh_edge += count(Sight::kMeshEdge);
     total.occluded += count(Sight::kOccluded);
   }
   total.candidates = texels.size() * keyframes.size();

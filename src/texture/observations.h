@@ -40,6 +40,10 @@ struct VisibilityOptions {
   double depth_edge_jump_m = 0.05;  // jump > max(this, rel * z)
   double depth_edge_jump_rel = 0.03;
   int depth_edge_dilate_px = 3;
+  bool test_mesh_edges = true;  // away from where a surface of the mesh ends
+  double mesh_edge_jump_m = 0.008;  // jump > max(this, rel * z)
+  double mesh_edge_jump_rel = 0.004;
+  int mesh_edge_dilate_px = 3;
   int min_views = 2;  // texels seen by fewer keyframes leave the problem
 };
 
@@ -47,7 +51,8 @@ struct VisibilityOptions {
 // counts for the first test it fails).
 struct VisibilityCounts {
   size_t candidates = 0, behind_or_far = 0, outside_image = 0, grazing = 0,
-         depth_missing = 0, depth_edge = 0, depth_disagrees = 0, occluded = 0,
+         depth_missing = 0, depth_edge = 0, depth_disagrees = 0, mesh_edge = 0,
+         occluded = 0,
          too_few_views = 0, used = 0;
 };
 

@@ -29,13 +29,25 @@ struct TexelSet {
   size_t size() const { return position.size(); }
 };
 
+// Texels near edges of the shape are left out: a fused mesh is rounded there by
+// about a voxel, so a texel would look at what lies behind the edge.
+struct TexelOptions {
+  int stride = 1;  // every stride-th column and row; at least 1
+  // Distance kept from sharp edges [m], 0 = off. Sharp are open edges, and
+  // edges between clusters whose planes differ by sharp_angle_deg or whose
+  // distances to the middle of the edge sum to sharp_step_m.
+  double edge_margin_m = 0.025;
+  double sharp_angle_deg = 20;
+  double sharp_step_m = 0.006;
+};
+
 // The texels of all front-facing charts (steep and back ones take no part in
-// E_c and E_p) on every `stride`-th column and row of each chart's grid, centred
+// E_c and E_p) on every stride-th column and row of each chart's grid, centred
 // in the chart, so that charts narrower than the stride still get some. Throws
-// OptionsError when stride < 1.
+// OptionsError when the stride is below 1 or the margin negative.
 TexelSet SampleTexels(const TriMesh& mesh,
                       const PlanarPartition& partition,
                       const Atlas& atlas,
-                      int stride);
+                      const TexelOptions& options);
 
 }  // namespace facet

@@ -59,8 +59,15 @@ FrameView::FrameView(const RgbdCalibration& calibration,
                            options.depth_edge_jump_rel,
                            options.depth_edge_dilate_px);
   }
-  if (options.test_occlusion) {
+  if (options.test_occlusion || options.test_mesh_edges) {
     DepthRender render = RenderDepth(scene, color_, color_cam_from_world);
+    if (options.test_mesh_edges) {
+      mesh_edges_ = SurfaceEdgeMask(
+          cv::Mat(render.height, render.width, CV_32F, render.depth.data()),
+          options.mesh_edge_jump_m,
+          options.mesh_edge_jump_rel,
+          options.mesh_edge_dilate_px);
+    }
     for (float& z : render.depth) z = z > 0 ? z : kNothing;
     const cv::Mat z(render.height, render.width, CV_32F, render.depth.data());
     cv::erode(z, nearest_, cv::Mat::ones(3, 3, CV_8U));
@@ -119,6 +126,7 @@ Sight FrameView::Test(const Vector3f& p,
   }
   const Sight sensor = TestSensorDepth(q);
   if (sensor != Sight::kVisible) return sensor;
+  if (IsAtMeshEdge(p)) return Sight::kMeshEdge;
   if (options_.test_occlusion && IsOccluded(p)) return Sight::kOccluded;
   return Sight::kVisible;
 }
@@ -182,6 +190,16 @@ Sight FrameView::TestSensorDepth(const Vector3f& q) const {
     if (std::abs(measured - z) > tolerance) return Sight::kDepthDisagrees;
   }
   return Sight::kVisible;
+}
+
+bool FrameView::IsAtMeshEdge(const Vector3f& p) const {
+  if (mesh_edges_.empty()) return false;
+  const Vector3f y = rotation_ * p + translation_;
+  if (!(y.z() > 1e-3f)) return false;
+  const Eigen::Vector2d u = color_.Project<double>(y.cast<double>());
+  if (!color_.Contains(u, -0.49)) return false;
+  return mesh_edges_.at<uint8_t>(static_cast<int>(u.y() + 0.5),
+                                 static_cast<int>(u.x() + 0.5)) != 0;
 }
 
 bool FrameView::IsOccluded(const Vector3f& p) const {

@@ -25,10 +25,11 @@ enum class Sight {
   kDepthMissing,
   kDepthEdge,
   kDepthDisagrees,
+  kMeshEdge,
   kOccluded,
   kVisible,
 };
-inline constexpr int kNumSights = 8;
+inline constexpr int kNumSights = 9;
 
 // A ball that holds a group of points, to refuse them at once.
 struct Ball {
@@ -71,6 +72,7 @@ class FrameView {
 
  private:
   bool IsOccluded(const Eigen::Vector3f& p) const;
+  bool IsAtMeshEdge(const Eigen::Vector3f& p) const;
   Sight TestSensorDepth(const Eigen::Vector3f& q) const;
   bool IsInRangeAndImage(const Eigen::Vector3f& q, Sight* refusal) const;
   // Sensor depth at a point [m], 0 = missing; z there, and the pixel (-1 =
@@ -88,6 +90,7 @@ class FrameView {
   Eigen::Vector3f center_;  // of the colour camera, world
   float min_cos_ = 0;
   cv::Mat depth_, edges_;
+  cv::Mat mesh_edges_;
   cv::Mat nearest_, farthest_;  // 3 x 3 minimum and maximum of the z-buffer
   Eigen::Vector3f sides_[4];    // of the frustum, unit, inwards, camera frame
 };
