@@ -123,6 +123,10 @@ DEFINE_double(max_angle_deg,
 DEFINE_bool(test_depth_edges,
             VisibilityOptions().test_depth_edges,
             "texels must not lie beside jumps of the sensor depth");
+DEFINE_double(depth_weight,
+              EnergyWeights().depth_weight,
+              "weight of the distances of the depth images from the planes, 0 "
+              "= off (paper)");
 DEFINE_double(edge_margin,
               TexelOptions().edge_margin_m,
               "texels of the optimisation keep away from sharp edges of the "
@@ -338,6 +342,7 @@ void SolverOptions(ReconstructOptions* o) {
   p.weights.pose_prior = gauge <= 1;
   p.solver.remove_common_motion = gauge == 0;
   p.weights.prior_strength = FLAGS_gauge_strength;
+  p.weights.depth_weight = FLAGS_depth_weight;
   p.weights.prior.translation_m = 1e-3 * FLAGS_gauge_sigma_mm;
   p.weights.prior.rotation_rad =
       FLAGS_gauge_sigma_deg * 3.14159265358979323846 / 180;
@@ -392,6 +397,7 @@ std::string ProfileFlags(const std::string& name) {
          "--schedule=10x[C; Phi; T+F]\n"
          "--stop_decrease=0\n"
          "--smoothing=0\n"
+         "--depth_weight=0\n"
          "--edge_margin=0\n"
          "--test_mesh_edges=false\n"
          "--gauge=none\n"

@@ -84,6 +84,7 @@ json PhotometricSettings(const ReconstructOptions& o) {
           {"pose_prior", p.weights.pose_prior},
           {"prior_rotation_rad", p.weights.prior.rotation_rad},
           {"prior_translation_m", p.weights.prior.translation_m},
+          {"depth_weight", p.weights.depth_weight},
           {"prior_strength", p.weights.prior_strength},
           {"image_margin_px", v.image_margin_px},
           {"test_occlusion", v.test_occlusion},

@@ -25,10 +25,10 @@ std::string PhaseLine(int round, const std::string& phase,
                       const char* mark, double wall_s) {
   char line[200];
   std::snprintf(line, sizeof(line),
-                "  %5d  %-7s %12.4f %12.4f %12.4f %12.4f %9.4f %9.3f  %-8s "
+                "  %5d  %-7s %12.4f %12.4f %12.4f %12.4f %9.4f %10.4f %9.3f  %-8s "
                 "%7.1f",
                 round, phase.c_str(), e.e_c, lambda1 * e.e_p,
-                lambda2 * e.e_s, e.e_tex, e.e_prior, e.rms_grey, mark, wall_s);
+                lambda2 * e.e_s, e.e_tex, e.e_prior, e.e_depth, e.rms_grey, mark, wall_s);
   return line;
 }
 
@@ -158,6 +158,11 @@ PhotometricResult RunPhotometricStage(
   problem.tiles = std::move(sampled.tiles);
   problem.anchors = anchors;
   problem.initial_cam_from_world = cam_from_world;
+  if (options.weights.depth_weight > 0) {
+    problem.depth_moments =
+        ComputeDepthMoments(partition, planes, scene, sequence, keyframes,
+                            cam_from_world, DepthMomentOptions());
+  }
   FinishTextureProblem(&problem);
 
   ReconState state = InitialState(problem, planes);
@@ -168,7 +173,7 @@ PhotometricResult RunPhotometricStage(
   weights.prior.scale = InitialPriorScale(problem, weights, state);
 
   print("  round  phase            E_c   lambda1 E_p   lambda2 E_s        E_tex"
-        "   E_prior  rms grey  result    wall s");
+        "   E_prior    E_depth  rms grey  result    wall s");
   result.initial = EvaluateEnergy(problem, weights, state, true);
   print(PhaseLine(0, "start", result.initial, weights.lambda1, weights.lambda2,
                   "", 0));

@@ -22,6 +22,7 @@ json ToJson(const EnergyTerms& t) {
           {"E_s", t.e_s},
           {"E_tex", t.e_tex},
           {"E_prior", t.e_prior},
+          {"E_depth", t.e_depth},
           {"rms_intensity", t.RmsIntensity()},
           {"rms_grey", t.rms_grey},
           {"observations", t.observations},

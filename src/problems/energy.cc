@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "costs/depth_moment.h"
 #include "costs/plane_manifold.h"
 #include "costs/se3_manifold.h"
 #include "problems/tile_samples.h"
@@ -90,6 +91,22 @@ double EvaluatePosePrior(const TextureProblem& problem,
   return sum;
 }
 
+double EvaluateDepthTerm(const TextureProblem& problem,
+                         const EnergyWeights& weights,
+                         const ReconState& state) {
+  if (weights.depth_weight == 0) return 0;
+  double sum = 0;
+  for (const DepthMoment& d : problem.depth_moments) {
+    double r[4];
+    DepthMomentCost(d.moment, problem.anchors[d.plane], weights.DepthFactor())(
+        state.poses.data() + kPoseSize * d.keyframe,
+        state.planes.data() + kPlaneSize * d.plane,
+        r);
+    for (const double x : r) sum += x * x;
+  }
+  return sum;
+}
+
 EnergyTerms EvaluateEnergy(const TextureProblem& problem,
                            const EnergyWeights& weights,
                            const ReconState& state,
@@ -101,6 +118,7 @@ EnergyTerms EvaluateEnergy(const TextureProblem& problem,
   terms.e_p = weights.texel_weight * SumPlaneDistances(problem, state);
   for (const double f : state.warps) terms.e_s += f * f;
   terms.e_prior = EvaluatePosePrior(problem, weights, state);
+  terms.e_depth = EvaluateDepthTerm(problem, weights, state);
   terms.e_tex =
       terms.e_c + weights.lambda1 * terms.e_p + weights.lambda2 * terms.e_s;
   terms.observations = sums.counts.used;

@@ -11,7 +11,7 @@
 //   E_s  sum over control vertices of |f|^2 [px^2]
 //
 // No 1/2, no loss: all schedules and solvers are judged by this function, never
-// by Ceres's internal cost (2 * cost = E_tex + E_prior; tested). The set of
+// by Ceres's internal cost (2 * cost = E_tex + E_prior + E_depth; tested). The set of
 // observations is frozen: samples outside the image are clamped to its border
 // and counted.
 #pragma once
@@ -31,16 +31,22 @@ struct EnergyWeights {
   // initial E_c; turned into prior.scale by InitialPriorScale.
   double prior_strength = 0.0005;
   PosePriorSigmas prior;
+  // Of E_d (costs/depth_moment.h): 1 weighs every depth pixel like an intensity
+  // of standard deviation 0.05 (method, ch. 10); 0 = off.
+  double depth_weight = 0.03;
+
+  double DepthFactor() const { return depth_weight * 0.05 * 0.05; }
 };
 
 struct EnergyTerms {
   double e_c = 0, e_p = 0, e_s = 0;  // unweighted by lambda
   double e_prior = 0;                // pose prior (costs/pose_prior.h)
+  double e_depth = 0;                // weighted E_d
   double e_tex = 0;                  // E_c + lambda1 E_p + lambda2 E_s
   double rms_grey = 0;  // rms of I - C on the unsmoothed images, 0-255
   size_t observations = 0, clamped = 0, behind = 0;
 
-  double Objective() const { return e_tex + e_prior; }
+  double Objective() const { return e_tex + e_prior + e_depth; }
   double RmsIntensity() const;  // sqrt(mean (I - C)^2), smoothed images, 0-1
   double ClampedShare() const;
   double texel_weight = 1;
@@ -55,6 +61,11 @@ EnergyTerms EvaluateEnergy(const TextureProblem& problem,
 
 // E_prior alone.
 double EvaluatePosePrior(const TextureProblem& problem,
+                         const EnergyWeights& weights,
+                         const ReconState& state);
+
+// Weighted E_d: how far the depth images are from the planes.
+double EvaluateDepthTerm(const TextureProblem& problem,
                          const EnergyWeights& weights,
                          const ReconState& state);
 

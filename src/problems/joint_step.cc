@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "costs/depth_moment.h"
 #include "costs/plane_manifold.h"
 #include "costs/se3_manifold.h"
 #include "problems/color_step.h"
@@ -281,6 +282,19 @@ void AddBlocks(const TextureProblem& problem,
         nullptr,
         parameters);
     ceres_problem->SetManifold(plane, new AnchoredPlaneManifold);
+  }
+  if (weights.depth_weight == 0) return;
+  for (const DepthMoment& d : problem.depth_moments) {
+    double* plane = state->planes.data() + kPlaneSize * d.plane;
+    ceres_problem->AddResidualBlock(
+        DepthMomentCost::Create(
+            d.moment, problem.anchors[d.plane], weights.DepthFactor()),
+        nullptr,
+        pose(d.keyframe),
+        plane);
+    if (ceres_problem->GetManifold(plane) == nullptr) {
+      ceres_problem->SetParameterBlockConstant(plane);
+    }
   }
 }
 

@@ -32,6 +32,29 @@ std::vector<PlaneSegment> SegmentsOfPlane(const TextureProblem& problem,
   return segments;
 }
 
+// lambda1 E_p and the weighted E_d of each plane as one moment of (n, d): with
+// poses fixed, psi of costs/depth_moment.h is linear in the plane.
+std::vector<Eigen::Matrix4d> PlaneMoments(const TextureProblem& problem,
+                                          const EnergyWeights& weights,
+                                          const ReconState& state) {
+  std::vector<Eigen::Matrix4d> moments;
+  for (const Eigen::Matrix4d& moment : problem.moments) {
+    moments.push_back(weights.texel_weight * weights.lambda1 * moment);
+  }
+  if (weights.depth_weight == 0) return moments;
+  for (const DepthMoment& d : problem.depth_moments) {
+    const Pose pose = state.CamFromWorld(d.keyframe);
+    Eigen::Matrix4d psi = Eigen::Matrix4d::Zero();
+    psi.topLeftCorner<3, 3>() = pose.RotationMatrix();
+    psi.bottomLeftCorner<1, 3>() =
+        (pose.CenterInSource() - problem.anchors[d.plane]).transpose();
+    psi(3, 3) = 1;
+    moments[d.plane] +=
+        weights.DepthFactor() * psi.transpose() * d.moment * psi;
+  }
+  return moments;
+}
+
 // Normalises (n, d), keeps the side of the normal and scales steps beyond the
 // limits back towards `before`.
 void LimitPlaneStep(const SolverConfig& config,
@@ -95,6 +118,8 @@ void SolvePlanes(const TextureProblem& problem,
   const std::vector<PhotoFrame> frames =
       MakePhotoFrames(problem, *state, false, &warps);
   const std::vector<PhotoTexel> points = MeshPoints(problem, *state);
+  const std::vector<Eigen::Matrix4d> moments =
+      PlaneMoments(problem, weights, *state);
   std::vector<int> iterations(num_planes, 0), reverted(num_planes, 0);
 
   ParallelFor(0, num_planes, [&](size_t j) {
@@ -107,8 +132,7 @@ void SolvePlanes(const TextureProblem& problem,
     auto* photometric = new PlanePhotometricCost(
         frames, segments, points.data(), problem.anchors[j] - problem.origin,
         weights.texel_weight);
-    auto* moment = new PlaneMomentCost(problem.moments[j],
-                                       weights.texel_weight * weights.lambda1);
+    auto* moment = new PlaneMomentCost(moments[j], 1);
     const double cost_before = PlaneCost({photometric, moment}, plane);
     ceres::Problem ceres_problem;
     ceres_problem.AddParameterBlock(plane, kPlaneSize);

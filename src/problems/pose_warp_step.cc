@@ -10,7 +10,9 @@
 #include <cmath>
 #include <memory>
 
+#include "costs/depth_moment.h"
 #include "costs/frame_cell_cost.h"
+#include "costs/plane_manifold.h"
 #include "costs/warp_offset.h"
 #include "util/parallel_for.h"
 
@@ -105,6 +107,7 @@ class FrameProblem {
                                 weights.prior),
           nullptr, pose_);
     }
+    if (blocks & kPoses) AddDepthTerm(weights, keyframe, state);
     if (!(blocks & kPoses)) ceres_.SetParameterBlockConstant(pose_);
   }
 
@@ -143,6 +146,25 @@ class FrameProblem {
                            Vertex(a + 1, b + 1)});
       }
       ceres_.AddResidualBlock(cost, nullptr, parameters);
+    }
+  }
+
+  // Without effect on the solution while the pose is fixed.
+  void AddDepthTerm(const EnergyWeights& weights,
+                    int keyframe,
+                    ReconState* state) {
+    if (weights.depth_weight == 0) return;
+    const auto& moments = texture_.depth_moments;
+    auto d = std::lower_bound(
+        moments.begin(), moments.end(), keyframe,
+        [](const DepthMoment& m, int k) { return m.keyframe < k; });
+    for (; d != moments.end() && d->keyframe == keyframe; ++d) {
+      double* plane = state->planes.data() + kPlaneSize * d->plane;
+      ceres_.AddResidualBlock(
+          DepthMomentCost::Create(d->moment, texture_.anchors[d->plane],
+                                  weights.DepthFactor()),
+          nullptr, pose_, plane);
+      ceres_.SetParameterBlockConstant(plane);
     }
   }
 

@@ -16,6 +16,7 @@
 #include "geometry/plane.h"
 #include "geometry/pose.h"
 #include "geometry/warp_grid.h"
+#include "texture/depth_moments.h"
 #include "texture/observations.h"
 #include "texture/texels.h"
 
@@ -66,6 +67,7 @@ struct TextureProblem {
   std::vector<Eigen::Matrix4d> moments;  // of costs/plane_moment.h, a plane
   std::vector<size_t> plane_texels;      // active texels of each plane
   std::vector<uint16_t> views;           // keyframes that see each texel
+  std::vector<DepthMoment> depth_moments;    // may be empty: no E_d
   std::vector<Pose> initial_cam_from_world;  // centre of the pose prior
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  // of float coordinates
 

@@ -17,9 +17,9 @@ std::string CsvLine(int round,
                     double cpu_s) {
   char line[512];
   std::snprintf(line, sizeof(line),
-                "%d,%s,%.9g,%.9g,%.9g,%.9g,%.9g,%.6f,%zu,%zu,%zu,%d,%d,%d,%d,"
+                "%d,%s,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.6f,%zu,%zu,%zu,%d,%d,%d,%d,"
                 "%.3f,%.3f\n",
-                round, phase.c_str(), e.e_c, e.e_p, e.e_s, e.e_tex, e.e_prior,
+                round, phase.c_str(), e.e_c, e.e_p, e.e_s, e.e_tex, e.e_prior, e.e_depth,
                 e.rms_grey, e.observations, e.clamped, e.behind,
                 summary ? summary->accepted : 1,
                 summary ? summary->problems : 0,
@@ -74,7 +74,7 @@ Trace RunSchedule(const TextureProblem& problem,
 
 std::string TraceCsv(const Trace& trace) {
   std::string csv =
-      "round,phase,E_c,E_p_m2,E_s_px2,E_tex,E_prior,rms_grey_255,observations,"
+      "round,phase,E_c,E_p_m2,E_s_px2,E_tex,E_prior,E_depth,rms_grey_255,observations,"
       "clamped,behind,accepted,problems,iterations,reverted,wall_s,cpu_s\n";
   csv += CsvLine(0, "initial", trace.initial, nullptr, 0, 0);
   for (const TraceRow& row : trace.rows) {

@@ -130,7 +130,7 @@ TEST(Atlas, TexelsBelongToOneFaceAndReproject) {
   const Atlas atlas = BuildAtlas(scene.mesh, scene.partition, options);
   ASSERT_EQ(atlas.charts.size(), 1u);
   const Chart& chart = atlas.charts[0];
-  const TexelSet texels = SampleTexels(scene.mesh, scene.partition, atlas, 1);
+  const TexelSet texels = SampleTexels(scene.mesh, scene.partition, atlas, {1, 0});
   std::set<std::pair<int, int>> centres;
   for (size_t i = 0; i < texels.size(); ++i) {
     const Vector2d px =
@@ -158,7 +158,7 @@ TEST(Atlas, TexelAreaIsProjectedArea) {
     AtlasOptions options;
     options.texel_size_m = h;
     const Atlas atlas = BuildAtlas(scene.mesh, scene.partition, options);
-    const TexelSet texels = SampleTexels(scene.mesh, scene.partition, atlas, 1);
+    const TexelSet texels = SampleTexels(scene.mesh, scene.partition, atlas, {1, 0});
     EXPECT_NEAR(static_cast<double>(texels.size()) * h * h,
                 0.31 * 0.17,
                 0.01 * 0.31 * 0.17);
@@ -176,17 +176,17 @@ TEST(Atlas, StrideKeepsItsShareAndSmallCharts) {
               1,
               &scene);
   const Atlas atlas = BuildAtlas(scene.mesh, scene.partition, {});
-  const auto full = SampleTexels(scene.mesh, scene.partition, atlas, 1);
+  const auto full = SampleTexels(scene.mesh, scene.partition, atlas, {1, 0});
   for (int stride : {2, 4, 16}) {
     const auto sparse =
-        SampleTexels(scene.mesh, scene.partition, atlas, stride);
+        SampleTexels(scene.mesh, scene.partition, atlas, {stride, 0});
     EXPECT_EQ(sparse.plane.back(), 1);
     EXPECT_NEAR(1.0 * full.size() / sparse.size() / (stride * stride),
                 1,
                 stride == 16 ? 0.25 : 0.1);
     EXPECT_TRUE(std::is_sorted(sparse.plane.begin(), sparse.plane.end()));
   }
-  EXPECT_THROW(SampleTexels(scene.mesh, scene.partition, atlas, 0),
+  EXPECT_THROW(SampleTexels(scene.mesh, scene.partition, atlas, {0, 0}),
                OptionsError);
 }
 
@@ -223,7 +223,7 @@ TEST(Atlas, FoldedClusterGetsChartsWithoutOverlap) {
     EXPECT_GT(mine, 0);
   }
   // Back and steep charts take no part in the optimisation.
-  const auto texels = SampleTexels(scene.mesh, scene.partition, atlas, 1);
+  const auto texels = SampleTexels(scene.mesh, scene.partition, atlas, {1, 0});
   for (int face : texels.face) {
     EXPECT_FALSE(face == 2 || face == 3);
   }

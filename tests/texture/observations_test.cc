@@ -40,7 +40,7 @@ class Scene {
     AtlasOptions options;
     options.texel_size_m = 0.01;
     atlas = BuildAtlas(scene.mesh, scene.partition, options);
-    texels = SampleTexels(scene.mesh, scene.partition, atlas, 1);
+    texels = SampleTexels(scene.mesh, scene.partition, atlas, {1, 0});
     for (int i = 0; i < num_frames; ++i) {
       // Camera centres (0.15 i, 0.05 i, 0).
       const Pose pose(Eigen::Quaterniond::Identity(),
