@@ -125,12 +125,12 @@ DEFINE_bool(test_depth_edges,
             "texels must not lie beside jumps of the sensor depth");
 DEFINE_double(depth_weight,
               EnergyWeights().depth_weight,
-              "weight of the distances of the depth images from the planes, 0 "
-              "= off (paper)");
+              "weight of the distances of the depth images from the planes "
+              "(configs/trajectory.flags), 0 = off");
 DEFINE_double(edge_margin,
               TexelOptions().edge_margin_m,
               "texels of the optimisation keep away from sharp edges of the "
-              "mesh [m], 0 = off");
+              "mesh [m] (configs/trajectory.flags), 0 = off");
 DEFINE_bool(test_mesh_edges,
             VisibilityOptions().test_mesh_edges,
             "texels must not lie beside places where a surface of the mesh "

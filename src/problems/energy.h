@@ -33,7 +33,7 @@ struct EnergyWeights {
   PosePriorSigmas prior;
   // Of E_d (costs/depth_moment.h): 1 weighs every depth pixel like an intensity
   // of standard deviation 0.05 (method, ch. 10); 0 = off.
-  double depth_weight = 0.03;
+  double depth_weight = 0;
 
   double DepthFactor() const { return depth_weight * 0.05 * 0.05; }
 };

@@ -29,14 +29,15 @@ struct TexelSet {
   size_t size() const { return position.size(); }
 };
 
-// Texels near edges of the shape are left out: a fused mesh is rounded there by
-// about a voxel, so a texel would look at what lies behind the edge.
+// With a margin, texels near edges of the shape are left out: a fused mesh is
+// rounded there by about a voxel, so a texel would look at what lies behind the
+// edge. Cameras come out truer, but texture that lies near edges less sharp.
 struct TexelOptions {
   int stride = 1;  // every stride-th column and row; at least 1
   // Distance kept from sharp edges [m], 0 = off. Sharp are open edges, and
   // edges between clusters whose planes differ by sharp_angle_deg or whose
   // distances to the middle of the edge sum to sharp_step_m.
-  double edge_margin_m = 0.025;
+  double edge_margin_m = 0;
   double sharp_angle_deg = 20;
   double sharp_step_m = 0.006;
 };

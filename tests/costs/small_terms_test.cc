@@ -6,6 +6,7 @@
 
 #include <memory>
 
+#include "costs/depth_moment.h"
 #include "costs/plane_manifold.h"
 #include "costs/plane_moment.h"
 #include "costs/pose_prior.h"
@@ -71,6 +72,42 @@ TEST(PlaneMomentCost, FlatClusterIsZeroOnItsPlane) {
   const PlaneMomentCost cost(moment, 1);
   EXPECT_NEAR(Residuals(cost, {{0, 0, 1, 0}}).norm(), 0, 1e-7);
   EXPECT_NEAR(Residuals(cost, {{0, 0, 1, 0.1}}).squaredNorm(), 50 * 0.01, 1e-9);
+}
+
+// E_d from 4x4 moments equals the weighted sum over the samples, for any pose
+// and plane. Breaks if the plane is taken to the camera with T^-1, or if the
+// anchor is forgotten.
+TEST(DepthMomentCost, EqualsTheSumOverTheSamples) {
+  Random random(7);
+  for (int trial = 0; trial < 20; ++trial) {
+    const std::vector<double> pose = MakePhotoScene(1, &random).pose;
+    const Eigen::Vector3d anchor = 2 * RandomVector(&random);
+    const Eigen::Vector3d n = RandomVector(&random).normalized();
+    const std::vector<double> plane = {n.x(), n.y(), n.z(), 0.1};
+    const Pose world_from_cam = PoseFromBlock(pose.data()).Inverse();
+    Eigen::Matrix4d moment = Eigen::Matrix4d::Zero();
+    double expected = 0;
+    for (int i = 0; i < 100; ++i) {
+      const Eigen::Vector3d x = 3 * RandomVector(&random);
+      const double weight = 1 + i % 5;
+      const Eigen::Vector4d m = x.homogeneous();
+      moment += weight * m * m.transpose();
+      const double distance = n.dot(world_from_cam * x - anchor) + 0.1;
+      expected += weight * distance * distance;
+    }
+    const std::unique_ptr<ceres::CostFunction> cost(
+        DepthMomentCost::Create(moment, anchor, 0.5));
+    EXPECT_NEAR(Residuals(*cost, {pose, plane}).squaredNorm(),
+                0.5 * expected,
+                1e-9 * expected);
+    const LeftSe3Manifold poses;
+    const AnchoredPlaneManifold planes;
+    const TangentBlocks blocks = {{pose, plane}, {&poses, &planes}};
+    Eigen::VectorXd r;
+    const Eigen::MatrixXd j = TangentJacobian(*cost, blocks, &r);
+    EXPECT_LT((j - DifferenceJacobian(*cost, blocks, 1e-5)).norm(),
+              1e-6 * j.norm());
+  }
 }
 
 // Breaks if the prior pulls away from the given poses.

@@ -39,14 +39,17 @@ TEST(Energy, IsTwiceTheCostOfTheReferenceProblem) {
   options.texel_spacing_m = 0.1;
   TinyScene scene = MakeTinyScene(options);
   ReconState state = PerturbedState(scene);
+  AddDepthMoments(&scene);
   for (const bool pose_prior : {false, true}) {
     EnergyWeights weights = SomeWeights();
     weights.pose_prior = pose_prior;
+    weights.depth_weight = 0.03;
     const EnergyTerms terms = EvaluateEnergy(scene.problem, weights, state);
     ReferenceProblem reference(scene.problem, weights, &state);
     EXPECT_NEAR(
         2 * reference.Cost(), terms.Objective(), 1e-5 * terms.Objective());
     EXPECT_EQ(terms.e_prior > 0, pose_prior);
+    EXPECT_GT(terms.e_depth, 0);
     EXPECT_EQ(terms.observations, scene.problem.observations.size());
     EXPECT_DOUBLE_EQ(terms.e_tex,
                      terms.e_c + 170 * terms.e_p + 0.1 * terms.e_s);

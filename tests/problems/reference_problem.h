@@ -12,6 +12,7 @@
 
 #include <vector>
 
+#include "costs/depth_moment.h"
 #include "costs/photometric.h"
 #include "costs/plane_manifold.h"
 #include "costs/plane_moment.h"
@@ -118,6 +119,15 @@ class ReferenceProblem {
           WarpOffsetCost::Create(), Scaled(weights.lambda2), warp + 2 * l);
     }
     ceres_.AddParameterBlock(PoseBlock(k), kPoseSize, new LeftSe3Manifold);
+    for (const DepthMoment& d : problem_.depth_moments) {
+      if (d.keyframe != k) continue;
+      ceres_.AddResidualBlock(
+          DepthMomentCost::Create(
+              d.moment, problem_.anchors[d.plane], weights.DepthFactor()),
+          nullptr,
+          PoseBlock(k),
+          PlaneBlock(d.plane));
+    }
     if (!weights.pose_prior) return;
     ceres_.AddResidualBlock(
         PosePriorCost::Create(problem_.initial_cam_from_world[k],

@@ -86,7 +86,9 @@ TEST(SolveColors, LeavesUnseenTexelsAlone) {
 // of the plain problem. Breaks if compression, binning by cell, weights or the
 // radius differ; 1e-3 covers float Jacobians (1e-4) and the diagonal shift.
 TEST(SolveBlocks, FirstStepIsThatOfTheReference) {
-  const Start start = MakeStart(0.06);
+  Start start = MakeStart(0.06);
+  AddDepthMoments(&start.scene);
+  start.weights.depth_weight = 0.03;
   SolverConfig config;
   config.remove_common_motion = false;
   config.max_plane_iterations = config.max_pose_iterations = 1;

@@ -223,6 +223,45 @@ TEST(DepthEdgeMask, ThresholdGrowsWithDepth) {
   EXPECT_TRUE(edges(4.13f, 4));
 }
 
+// A z-buffer of two half planes, left and right of the middle of the image:
+// 1/z = a + b (x - middle).
+cv::Mat TwoPlanes(double a1, double b1, double a2, double b2) {
+  cv::Mat depth(20, 60, CV_32F);
+  for (int y = 0; y < depth.rows; ++y) {
+    for (int x = 0; x < depth.cols; ++x) {
+      const double d = x - 29.5;
+      depth.at<float>(y, x) = static_cast<float>(
+          1 / (d < 0 ? a1 + b1 * d : a2 + b2 * d));
+    }
+  }
+  return depth;
+}
+
+// A step of 2 cm between slopes is found although neighbouring pixels of the
+// slopes differ by more; the same slopes meeting in a crease are none. Breaks
+// if depths are compared without continuing the surfaces, or z instead of 1/z.
+TEST(SurfaceEdgeMask, FindsLowStepsAndNoSlopesOrCreases) {
+  const double slope = 0.003;  // 1/m a pixel: 1.2 cm a pixel at 2 m
+  for (const bool upright : {false, true}) {
+    const auto count = [&](const cv::Mat& depth, int dilate) {
+      const cv::Mat turned = upright ? cv::Mat(depth.t()) : depth;
+      return cv::countNonZero(SurfaceEdgeMask(turned, 0.008, 0.004, dilate));
+    };
+    EXPECT_EQ(count(TwoPlanes(0.5, slope, 0.5, slope), 3), 0);
+    EXPECT_EQ(count(TwoPlanes(0.5, slope, 0.5, -slope), 3), 0);
+    const cv::Mat step = TwoPlanes(0.5, slope, 1 / 2.02, slope);
+    EXPECT_GE(count(step, 0), 2 * 20);
+    EXPECT_LE(count(step, 0), 4 * 20);
+    EXPECT_EQ(count(step, 3), count(step, 0) + 6 * 20);
+  }
+}
+
+// Nothing beside something is an edge, nothing alone is none.
+TEST(SurfaceEdgeMask, TheEndOfTheMeshIsAnEdge) {
+  EXPECT_GT(cv::countNonZero(SurfaceEdgeMask(Halves(0, 2), 0.008, 0, 0)), 0);
+  EXPECT_EQ(cv::countNonZero(SurfaceEdgeMask(Halves(0, 0), 0.008, 0, 0)), 0);
+}
+
 TEST(DepthSigma, GrowsFromMillimetresToCentimetres) {
   EXPECT_NEAR(DepthSigma(0.4), 0.0012, 1e-12);
   EXPECT_NEAR(DepthSigma(2.4), 0.0012 + 0.0019 * 4, 1e-12);

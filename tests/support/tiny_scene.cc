@@ -189,6 +189,31 @@ Eigen::Vector3d RandomDirection(Random* random) {
 
 }  // namespace
 
+void AddDepthMoments(TinyScene* scene) {
+  TextureProblem& problem = scene->problem;
+  for (int k = 0; k < problem.NumKeyframes(); ++k) {
+    std::vector<DepthMoment> moments(problem.NumPlanes());
+    for (size_t i = problem.observations.begin[k];
+         i < problem.observations.begin[k + 1];
+         ++i) {
+      const uint32_t texel = problem.observations.texel[i];
+      const int j = problem.texels.plane[texel];
+      const Eigen::Vector3d x =
+          scene->cam_from_world[k] *
+          scene->planes[j].Project(
+              problem.texels.position[texel].cast<double>());
+      const Eigen::Vector4d m = x.homogeneous();
+      moments[j].moment += 1e6 * m * m.transpose();
+      moments[j].keyframe = k;
+      moments[j].plane = j;
+      ++moments[j].samples;
+    }
+    for (const DepthMoment& moment : moments) {
+      if (moment.samples > 0) problem.depth_moments.push_back(moment);
+    }
+  }
+}
+
 void PerturbPoses(double rotation_rad,
                   double translation_m,
                   uint64_t seed,

@@ -47,6 +47,10 @@ struct TinyScene {
 
 TinyScene MakeTinyScene(const TinySceneOptions& options = {});
 
+// Depth samples of the true planes, as the true cameras see their texels, with
+// a standard deviation of 1 mm.
+void AddDepthMoments(TinyScene* scene);
+
 // Turns every camera about its centre by `rotation_rad` and moves it by
 // `translation_m`, both in random directions.
 void PerturbPoses(double rotation_rad,

@@ -190,6 +190,47 @@ TEST(Atlas, StrideKeepsItsShareAndSmallCharts) {
                OptionsError);
 }
 
+TEST(Texels, KeepAwayFromSharpEdgesOnly) {
+  // Two halves of a wall that are two clusters in one plane, and a wall at a
+  // right angle: texels stay away from the corner and from the open rim, not
+  // from the border that is none of the shape. Fails if all borders of clusters
+  // count, or if the margin is taken in pixels.
+  constexpr double kMargin = 0.03;
+  PlaneScene scene;
+  const auto quad = [&](Vector3d corner, Vector3d u) {
+    AddQuadGrid(corner, u, Vector3d(0, 0.4, 0), 4, 4, &scene);
+  };
+  quad(Vector3d(0, 0, 2), Vector3d(0.4, 0, 0));
+  quad(Vector3d(0.4, 0, 2), Vector3d(0.4, 0, 0));
+  quad(Vector3d(0.8, 0, 2), Vector3d(0, 0, -0.4));
+  // The quads share their vertices where they meet.
+  for (auto& face : scene.mesh.faces) {
+    for (int& v : face) {
+      int first = 0;
+      while ((scene.mesh.vertices[first] - scene.mesh.vertices[v]).norm() >
+             1e-9) {
+        ++first;
+      }
+      v = first;
+    }
+  }
+  AtlasOptions options;
+  options.texel_size_m = 0.005;
+  const Atlas atlas = BuildAtlas(scene.mesh, scene.partition, options);
+  const TexelSet texels = SampleTexels(
+      scene.mesh, scene.partition, atlas, {1, kMargin});
+  double nearest_border = 1;
+  for (size_t i = 0; i < texels.size(); ++i) {
+    const Vector3d p = texels.position[i].cast<double>();
+    const double along = p.x() + (2 - p.z());  // 0 ... 1.2 over the three
+    EXPECT_GT(std::min({p.y(), 0.4 - p.y(), along, 1.2 - along,
+                        std::abs(along - 0.8)}),
+              kMargin - 0.0075);
+    nearest_border = std::min(nearest_border, std::abs(along - 0.4));
+  }
+  EXPECT_LT(nearest_border, 0.005);
+}
+
 TEST(Atlas, FrameIsRightHandedSeenFromOutside) {
   // The page must show the surface unmirrored: down x right = normal.
   const PlaneScene scene = BumpyWall(6);

@@ -47,7 +47,8 @@ class Wall {
                    0.04 * i, Vector3d(1, 2, 0.5).normalized())),
                Vector3d(0.01 * i, -0.02 * i, 0.02 * i)));
     }
-    visibility.test_depth_edges = false;  // the wall is small
+    // The wall is small.
+    visibility.test_depth_edges = visibility.test_mesh_edges = false;
     visibility.image_margin_px = 0;
     options.border_feather_px = 0;
     lattice = {20, 16, 320, 240};
@@ -302,7 +303,7 @@ TEST(Bake, SteepFacesAreColouredWhereTheyAre) {
   for (int i = 0; i < 2; ++i) sequence.AddRendered(scene.mesh, pose, paint);
   BakeReport report;
   VisibilityOptions visibility;
-  visibility.test_depth_edges = false;
+  visibility.test_depth_edges = visibility.test_mesh_edges = false;
   const auto pages =
       BakeTexture(scene.mesh,
                   scene.Planes(),

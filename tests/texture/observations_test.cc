@@ -9,6 +9,7 @@
 #include "tests/texture/memory_sequence.h"
 #include "tests/texture/texture_scenes.h"
 #include "texture/atlas.h"
+#include "texture/depth_moments.h"
 #include "texture/fingerprint.h"
 #include "util/parallel_for.h"
 
@@ -50,7 +51,7 @@ class Scene {
       });
     }
     off.test_occlusion = off.test_sensor_depth = off.test_angle =
-        off.test_depth_edges = false;
+        off.test_depth_edges = off.test_mesh_edges = false;
     off.min_views = 1;
   }
 
@@ -100,6 +101,39 @@ TEST(Observations, NoTestsButTheImageAreExact) {
   EXPECT_EQ(s.counts.candidates, 3 * s.texels.size());
   EXPECT_EQ(s.counts.used, o.size());
   EXPECT_EQ(s.counts.used + s.counts.outside_image, s.counts.candidates);
+}
+
+TEST(Observations, MeshEdgesKeepAwayFromSilhouettes) {
+  // What is left of wall and square is a few pixels away from the outline of
+  // the square in every image, on both sides of it, and nothing else is lost
+  // but the rim of the wall. Fails if the wall behind the outline, or the
+  // square before it, is not tested.
+  Scene s;
+  VisibilityOptions options = s.off;
+  options.test_mesh_edges = options.test_occlusion = true;
+  const Observations o = s.Compute(options);
+  EXPECT_GT(s.counts.mesh_edge, 100u);
+  EXPECT_EQ(s.counts.used, o.size());
+  const Pinhole& camera = s.sequence.calibration().color;
+  size_t near_rim = 0;
+  for (int k = 0; k < 3; ++k) {
+    const Pose& pose = s.sequence.AllPoses()[k];
+    const Eigen::Vector2d low =
+        camera.Project<double>(pose * Vector3d(-0.1, -0.1, 1.2));
+    const Eigen::Vector2d high =
+        camera.Project<double>(pose * Vector3d(0.1, 0.1, 1.2));
+    for (size_t i = o.begin[k]; i < o.begin[k + 1]; ++i) {
+      const Eigen::Vector2d u = camera.Project<double>(
+          pose * s.texels.position[o.texel[i]].cast<double>());
+      // Signed distance to the outline in the maximum norm.
+      const double outside =
+          std::max({low.x() - u.x(), u.x() - high.x(), low.y() - u.y(),
+                    u.y() - high.y()});
+      EXPECT_GT(std::abs(outside), 2.4) << k;
+      near_rim += std::abs(outside) < 8 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(near_rim, 100u);
 }
 
 TEST(Observations, OccluderHidesExactlyItsShadow) {
@@ -256,6 +290,32 @@ TEST(Observations, SameAtAnyThreadCount) {
   EXPECT_TRUE(one.begin == four.begin);
   EXPECT_TRUE(one.texel == four.texel);
   EXPECT_GT(one.size(), 0u);
+}
+
+TEST(DepthMoments, VanishOnTheTruePlanesOfTheRightCamera) {
+  // Exact depth of a wall and a square, two cameras apart: the plane of each
+  // cluster, taken to the colour camera, is in the kernel of its moment; moved
+  // by 1 cm it costs that squared for every sample. Fails if samples go to the
+  // wrong cluster or stay in the depth camera.
+  Scene s;
+  DepthMomentOptions options;
+  options.step_px = 4;
+  const auto moments = ComputeDepthMoments(
+      s.scene.partition, s.scene.Planes(), RayScene(s.scene.mesh), s.sequence,
+      s.sequence.AllFrames(), s.sequence.AllPoses(), options);
+  ASSERT_EQ(moments.size(), 6u);  // both planes in all three frames
+  for (const DepthMoment& d : moments) {
+    const Pose& pose = s.sequence.AllPoses()[d.keyframe];
+    const Plane& plane = s.scene.partition.clusters[d.plane].plane;
+    Eigen::Vector4d psi;
+    psi.head<3>() = pose.rotation * plane.normal;
+    psi[3] = plane.offset - psi.head<3>().dot(pose.translation);
+    const double total = d.moment(3, 3);  // sum of the weights
+    EXPECT_GT(d.samples, 12u);
+    EXPECT_NEAR(psi.dot(d.moment * psi) / total, 0, 1e-10);
+    psi[3] += 0.01;
+    EXPECT_NEAR(psi.dot(d.moment * psi) / total, 1e-4, 1e-8);
+  }
 }
 
 }  // namespace
