@@ -56,11 +56,18 @@ ArchiveReader Open(const ReconstructOptions& options, Stage stage) {
 
 void Write(const ReconstructOptions& options,
            Stage stage,
-           const json& report,
+           const StageRecord& record,
            ArchiveWriter* writer) {
   writer->meta["settings"] = SettingsUpTo(options, stage);
-  writer->meta["report"] = report;
+  writer->meta["report"] = record.report;
+  writer->meta["warnings"] = record.warnings;
   writer->Write(ArtefactPath(options, stage));
+}
+
+void GetRecord(const ArchiveReader& reader, StageRecord* record) {
+  record->report = reader.meta().value("report", json());
+  record->warnings =
+      reader.meta().value("warnings", std::vector<std::string>());
 }
 
 // Eigen's classes have constructors; archives want plain numbers.
@@ -156,7 +163,7 @@ void Save(const ReconstructOptions& options,
   writer.Add("face_cluster", artefact.partition.face_cluster);
   writer.Add("clusters", FlattenClusters(artefact.partition.clusters));
   writer.Add("refitted_planes", Flatten(artefact.refitted_planes));
-  Write(options, stage, artefact.report, &writer);
+  Write(options, stage, artefact, &writer);
 }
 
 MeshArtefact LoadMeshArtefact(const ReconstructOptions& options, Stage stage) {
@@ -166,7 +173,7 @@ MeshArtefact LoadMeshArtefact(const ReconstructOptions& options, Stage stage) {
   artefact.partition.face_cluster = reader.Get<int>("face_cluster");
   artefact.partition.clusters = ClustersFrom(reader.Get<double>("clusters"));
   artefact.refitted_planes = PlanesFrom(reader.Get<double>("refitted_planes"));
-  artefact.report = reader.meta()["report"];
+  GetRecord(reader, &artefact);
   return artefact;
 }
 
@@ -174,7 +181,7 @@ void Save(const ReconstructOptions& options, const KeyframeArtefact& artefact) {
   ArchiveWriter writer;
   writer.Add("keyframes", artefact.keyframes);
   writer.Add("blur", artefact.blur);
-  Write(options, Stage::kKeyframes, artefact.report, &writer);
+  Write(options, Stage::kKeyframes, artefact, &writer);
 }
 
 KeyframeArtefact LoadKeyframeArtefact(const ReconstructOptions& options) {
@@ -182,7 +189,7 @@ KeyframeArtefact LoadKeyframeArtefact(const ReconstructOptions& options) {
   KeyframeArtefact artefact;
   artefact.keyframes = reader.Get<int>("keyframes");
   artefact.blur = reader.Get<double>("blur");
-  artefact.report = reader.meta()["report"];
+  GetRecord(reader, &artefact);
   return artefact;
 }
 
@@ -201,7 +208,7 @@ void Save(const ReconstructOptions& options,
              std::vector<int>{l.columns, l.rows, l.width, l.height});
   writer.Add("plane_texels", artefact.plane_texels);
   writer.Add("plane_frames", artefact.plane_frames);
-  Write(options, Stage::kPhotometric, artefact.report, &writer);
+  Write(options, Stage::kPhotometric, artefact, &writer);
 }
 
 PhotometricArtefact LoadPhotometricArtefact(const ReconstructOptions& options) {
@@ -222,21 +229,21 @@ PhotometricArtefact LoadPhotometricArtefact(const ReconstructOptions& options) {
                       lattice.at(3)};
   artefact.plane_texels = reader.Get<size_t>("plane_texels");
   artefact.plane_frames = reader.Get<size_t>("plane_frames");
-  artefact.report = reader.meta()["report"];
+  GetRecord(reader, &artefact);
   return artefact;
 }
 
 void Save(const ReconstructOptions& options, const GeometryArtefact& artefact) {
   ArchiveWriter writer;
   AddMesh(artefact.mesh, &writer);
-  Write(options, Stage::kGeometry, artefact.report, &writer);
+  Write(options, Stage::kGeometry, artefact, &writer);
 }
 
 GeometryArtefact LoadGeometryArtefact(const ReconstructOptions& options) {
   const ArchiveReader reader = Open(options, Stage::kGeometry);
   GeometryArtefact artefact;
   artefact.mesh = GetMesh(reader);
-  artefact.report = reader.meta()["report"];
+  GetRecord(reader, &artefact);
   return artefact;
 }
 

@@ -7,6 +7,7 @@
 
 #include <filesystem>
 
+#include "mesh/mesh_io.h"
 #include "tests/cli/cli_run.h"
 #include "util/atomic_file.h"
 #include "util/errors.h"
@@ -65,6 +66,35 @@ TEST(CliResume, StageByStage) {
   ExpectSameModel(dir / "run");
   const nlohmann::json report = ReadJson(dir / "run/report.json");
   EXPECT_EQ(report["energy"], ReadJson(Fixture("run/report.json"))["energy"]);
+}
+
+// Breaks if what a stage had to say is lost when its result is used again, or
+// said twice. Warnings: of the scan when it is opened, of partition (the mesh)
+// and of keyframes (an image that does not decode).
+TEST(CliResume, WarningsOfEarlierStagesStay) {
+  const ScanCopy scan;
+  scan.Write(scan.FrameFile(3, "color.jpg"), "not a picture");
+  scan.Write(scan.FrameFile(4, "pose.txt"), "-inf");
+  TriMesh mesh = ReadMesh(Fixture("dense.ply")).mesh;
+  mesh.faces.push_back(mesh.faces[0]);
+  const TempDir dir;
+  WritePly(dir / "bad.ply", mesh);
+  const std::vector<std::string> flags = {"--sequence=" + scan.path(),
+                                          "--mesh=" + dir / "bad.ply",
+                                          "--keyframe_window=1"};
+  ExpectSuccess(Reconstruct(dir / "run", flags));
+  const auto warnings = [&] {
+    return ReadJson(dir / "run/report.json")["warnings"];
+  };
+  const nlohmann::json in_one_go = warnings();
+  EXPECT_EQ(in_one_go.size(), 3u) << in_one_go;
+  for (const char* stage : kStages) {
+    std::vector<std::string> resume = flags;
+    resume.push_back(std::string("--from_stage=") + stage);
+    resume.push_back("--overwrite");
+    ExpectSuccess(Reconstruct(dir / "run", resume));
+    EXPECT_EQ(warnings(), in_one_go) << stage;
+  }
 }
 
 // flags.txt of a resumed run makes the same model elsewhere, in one go.

@@ -89,6 +89,7 @@ MeshArtefact SomeMeshArtefact() {
   }
   for (int f = 0; f < 38; ++f) artefact.partition.face_cluster.push_back(f % 3);
   artefact.report = {{"faces", 38}, {"rms", 0.1}};
+  artefact.warnings = {"opened 3 edges", "dropped \"2\" faces"};
   return artefact;
 }
 
@@ -133,6 +134,7 @@ TEST_F(ArtefactTest, MeshComesBackBitForBit) {
       ExpectSame(in.refitted_planes[j], out.refitted_planes[j]);
     }
     EXPECT_EQ(in.report, out.report);
+    EXPECT_EQ(in.warnings, out.warnings);
   }
 }
 
