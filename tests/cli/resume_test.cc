@@ -119,6 +119,7 @@ TEST(CliResume, OtherOptionsAreRefused) {
   } kCases[] = {
       {"--partition_clusters=81", "partition.target_clusters", "partition"},
       {"--merge_max_normal_deg=9", "partition.max_normal_deg", "partition"},
+      {"--merge_islands=false", "partition.absorb_islands", "partition"},
       {"--simplify_faces=1900", "simplify.target_faces", "simplify"},
       {"--simplify_stop=counts", "simplify.stop", "simplify"},
       {"--keyframe_window=3", "keyframes.window", "keyframes"},
