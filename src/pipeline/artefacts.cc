@@ -49,7 +49,8 @@ ArchiveReader Open(const ReconstructOptions& options, Stage stage) {
                      StageName(stage) + " or an earlier stage first");
   }
   ArchiveReader reader(path);
-  CheckSettings(path, reader.meta().value("settings", json::object()),
+  CheckSettings(path,
+                reader.meta().value("settings", json::object()),
                 SettingsUpTo(options, stage));
   return reader;
 }
@@ -127,9 +128,16 @@ std::vector<double> FlattenClusters(const std::vector<PlaneCluster>& clusters) {
   std::vector<double> flat;
   for (const PlaneCluster& c : clusters) {
     flat.insert(flat.end(),
-                {c.plane.normal.x(), c.plane.normal.y(), c.plane.normal.z(),
-                 c.plane.offset, c.centroid.x(), c.centroid.y(), c.centroid.z(),
-                 c.area, c.rms, static_cast<double>(c.num_faces)});
+                {c.plane.normal.x(),
+                 c.plane.normal.y(),
+                 c.plane.normal.z(),
+                 c.plane.offset,
+                 c.centroid.x(),
+                 c.centroid.y(),
+                 c.centroid.z(),
+                 c.area,
+                 c.rms,
+                 static_cast<double>(c.num_faces)});
   }
   return flat;
 }
@@ -204,8 +212,7 @@ void Save(const ReconstructOptions& options,
   writer.Add("planes", Flatten(artefact.planes));
   writer.Add("warps", artefact.warps);
   const WarpLattice& l = artefact.lattice;
-  writer.Add("lattice",
-             std::vector<int>{l.columns, l.rows, l.width, l.height});
+  writer.Add("lattice", std::vector<int>{l.columns, l.rows, l.width, l.height});
   writer.Add("plane_texels", artefact.plane_texels);
   writer.Add("plane_frames", artefact.plane_frames);
   Write(options, Stage::kPhotometric, artefact, &writer);
@@ -225,8 +232,8 @@ PhotometricArtefact LoadPhotometricArtefact(const ReconstructOptions& options) {
   artefact.planes = PlanesFrom(reader.Get<double>("planes"));
   artefact.warps = reader.Get<double>("warps");
   const std::vector<int> lattice = reader.Get<int>("lattice");
-  artefact.lattice = {lattice.at(0), lattice.at(1), lattice.at(2),
-                      lattice.at(3)};
+  artefact.lattice = {
+      lattice.at(0), lattice.at(1), lattice.at(2), lattice.at(3)};
   artefact.plane_texels = reader.Get<size_t>("plane_texels");
   artefact.plane_frames = reader.Get<size_t>("plane_frames");
   GetRecord(reader, &artefact);

@@ -11,6 +11,7 @@
 #include "mesh/mesh_io.h"
 #include "pipeline/artefacts.h"
 #include "pipeline/export_stage.h"
+#include "pipeline/preflight.h"
 #include "pipeline/report.h"
 #include "pipeline/stage_clock.h"
 #include "util/atomic_file.h"
@@ -99,11 +100,21 @@ class Run {
     }
   }
 
+  void AnnouncePlan() {
+    const SceneSize size = MeasureScene(options_, dense_.mesh, *sequence_);
+    const MemoryEstimate estimate = EstimateMemory(options_, size);
+    const double available = AvailableMemoryMb();
+    PrintLine("plan          " + DescribePlan(size, estimate, available));
+    report_["memory"] = {{"estimate_mb", estimate.PeakMb()},
+                         {"available_mb", available}};
+  }
+
   void RunPartition() {
     StageClock clock = Begin("partition");
     if (FromFile(Stage::kPartition)) {
       dense_ = LoadMeshArtefact(options_, Stage::kPartition);
       RestoreWarnings(dense_.warnings);
+      AnnouncePlan();
       stages_.push_back(clock.Finish("read"));
       return;
     }
@@ -113,6 +124,7 @@ class Run {
     const size_t vertices = dense_.mesh.NumVertices();
     const CleanReport cleaned = Clean();
     const SplitReport split = SplitNonManifold(&dense_.mesh);
+    AnnouncePlan();
     BeginWriting();
     if (split.non_manifold_edges + split.split_vertices > 0) {
       AddWarning(
@@ -174,6 +186,9 @@ class Run {
     simplified_.report = {{"faces", r.faces_after},
                           {"collapses", r.collapses},
                           {"max_error_m", r.max_error_m},
+                          {"flipped_area_share_before",
+                           r.flipped_before.area_share},
+                          {"flipped_area_share", r.flipped_after.area_share},
                           {"border_edges_before", r.border_edges_before},
                           {"border_edges_after", r.border_edges_after}};
     simplified_.warnings = StageWarnings();
@@ -195,6 +210,7 @@ class Run {
       return;
     }
     BeginWriting();
+    WarnOfConventions(*sequence_, dense_.mesh, options_.visibility);
     keyframes_.keyframes =
         SelectKeyframes(*sequence_, options_.keyframes, &keyframes_.blur);
     size_t usable = 0, held_out = 0;
@@ -265,7 +281,6 @@ class Run {
     photometric_.lattice = result.lattice;
     photometric_.plane_texels = result.plane_texels;
     photometric_.plane_frames = result.plane_frames;
-    WarnIfDepthDisagrees(result.visibility);
     const RigidMotion slide =
         CommonMotion(initial_poses_, result.cam_from_world);
     photometric_.report = PhotometricReport(result, slide);
@@ -278,20 +293,6 @@ class Run {
         result.initial.rms_grey,
         result.final_terms.rms_grey,
         slide.mm)));
-  }
-
-  // Some chance agreement lets a scan in a wrong convention through; its model
-  // would be a black one.
-  static void WarnIfDepthDisagrees(const VisibilityCounts& v) {
-    const size_t agreeing = v.used + v.occluded + v.too_few_views;
-    const size_t others = v.depth_disagrees + v.depth_missing;
-    if (agreeing >= 0.15 * static_cast<double>(agreeing + others)) return;
-    AddWarning(
-        Format("the sensor depth agrees with the mesh at only %.0f %% of "
-               "the texels in the images: poses, depth unit or "
-               "extrinsics may be wrong, run facet-check-input",
-               100.0 * static_cast<double>(agreeing) /
-                   static_cast<double>(agreeing + others)));
   }
 
   void RunGeometry() {
