@@ -3,6 +3,7 @@
 #include "pipeline/artefacts.h"
 
 #include <filesystem>
+#include <sstream>
 
 #include "costs/se3_manifold.h"
 #include "util/archive.h"
@@ -23,17 +24,39 @@ json SettingsUpTo(const ReconstructOptions& options, Stage stage) {
   return settings;
 }
 
-void CheckSettings(const std::string& path, const json& was, const json& now) {
+// "--name=value" of the flag in the lines of a flags.txt, "" if it is not
+// there.
+std::string FlagLine(const std::string& flags_text, const std::string& name) {
+  const std::string begin = "--" + name + "=";
+  std::istringstream lines(flags_text);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.compare(0, begin.size(), begin) == 0) return line;
+  }
+  return "";
+}
+
+// Throws OptionsError that names the first flag in which an artefact (`meta`)
+// and the options differ, and both values.
+void CheckSettings(const ReconstructOptions& options,
+                   Stage stage,
+                   const std::string& path,
+                   const json& meta) {
+  const json was = meta.value("settings", json::object());
+  const json now = SettingsUpTo(options, stage);
   if (was == now) return;
-  for (const auto& [stage, settings] : now.items()) {
+  for (const auto& [name, settings] : now.items()) {
     for (const auto& [key, value] : settings.items()) {
-      const json old = was.contains(stage) && was[stage].contains(key)
-                           ? was[stage][key]
-                           : json();
-      if (old == value) continue;
-      throw OptionsError(path + " was made with " + stage + "." + key + " = " +
-                         old.dump() + ", now it is " + value.dump() +
-                         ": start again with --from_stage=" + stage +
+      if (!was.contains(name) || !was[name].contains(key)) continue;
+      if (was[name][key] == value) continue;
+      const std::string flag = FlagOfSetting(key);
+      std::string before = FlagLine(meta.value("flags", std::string()), flag);
+      std::string after = FlagLine(options.flags_text, flag);
+      if (before == after) {  // not a flag, or a file was replaced
+        before = "--" + flag + " = " + was[name][key].dump();
+        after = value.dump();
+      }
+      throw OptionsError(path + " was made with " + before + ", now it is " +
+                         after + ": start again with --from_stage=" + name +
                          " or give the old value");
     }
   }
@@ -49,9 +72,7 @@ ArchiveReader Open(const ReconstructOptions& options, Stage stage) {
                      StageName(stage) + " or an earlier stage first");
   }
   ArchiveReader reader(path);
-  CheckSettings(path,
-                reader.meta().value("settings", json::object()),
-                SettingsUpTo(options, stage));
+  CheckSettings(options, stage, path, reader.meta());
   return reader;
 }
 
@@ -60,6 +81,7 @@ void Write(const ReconstructOptions& options,
            const StageRecord& record,
            ArchiveWriter* writer) {
   writer->meta["settings"] = SettingsUpTo(options, stage);
+  writer->meta["flags"] = options.flags_text;
   writer->meta["report"] = record.report;
   writer->meta["warnings"] = record.warnings;
   writer->Write(ArtefactPath(options, stage));

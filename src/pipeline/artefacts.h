@@ -3,7 +3,7 @@
 //
 // Results of the stages and how they are kept in RUN/stages/<stage>.bin. Each
 // file carries the settings of its stage and of all before; going on from it
-// with other settings is refused (OptionsError naming the setting).
+// with other settings is refused (OptionsError naming the flag).
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -56,7 +56,7 @@ void Save(const ReconstructOptions&, const PhotometricArtefact&);
 void Save(const ReconstructOptions&, const GeometryArtefact&);
 
 // Throw InputError (missing: names the stage to run; damaged) and OptionsError
-// (made with other settings).
+// (made with other settings: names the flag and both values).
 MeshArtefact LoadMeshArtefact(const ReconstructOptions&, Stage);
 KeyframeArtefact LoadKeyframeArtefact(const ReconstructOptions&);
 PhotometricArtefact LoadPhotometricArtefact(const ReconstructOptions&);

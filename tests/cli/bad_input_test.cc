@@ -274,12 +274,13 @@ TEST(CliBadInput, MeshOfAFewFaces) {
         box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)));
   }
   // Seen from inside; bit k of a corner is its side along axis k.
-  for (const std::array<int, 4>& side : {std::array<int, 4>{0, 1, 3, 2},
-                                         {4, 6, 7, 5},
-                                         {0, 4, 5, 1},
-                                         {2, 3, 7, 6},
-                                         {0, 2, 6, 4},
-                                         {1, 5, 7, 3}}) {
+  const std::array<int, 4> sides[] = {{0, 1, 3, 2},
+                                      {4, 6, 7, 5},
+                                      {0, 4, 5, 1},
+                                      {2, 3, 7, 6},
+                                      {0, 2, 6, 4},
+                                      {1, 5, 7, 3}};
+  for (const std::array<int, 4>& side : sides) {
     mesh.faces.push_back({side[0], side[1], side[2]});
     mesh.faces.push_back({side[0], side[2], side[3]});
   }
