@@ -22,10 +22,6 @@ DEFINE_int32(check_frames,
 namespace facet {
 namespace {
 
-// Wide enough for every depth unit: --min_depth and --max_depth are in metres
-// of the right one.
-constexpr double kAnyDepth = 1e6;
-
 void PrintCamera(const char* name, const Pinhole& c) {
   std::printf("%-10s %dx%d, fx %.2f fy %.2f cx %.2f cy %.2f\n",
               name,
@@ -108,10 +104,7 @@ int Run() {
   if (options.num_frames < 1) {
     throw OptionsError("--check_frames must be at least 1");
   }
-  SequenceOptions sequence_options = SequenceOptionsFromFlags();
-  sequence_options.min_depth_m = 0;
-  sequence_options.max_depth_m = kAnyDepth;
-  const auto sequence = OpenSequenceFromFlags(sequence_options);
+  const auto sequence = OpenSequenceFromFlags();
   PrintSequence(*sequence);
   const TriMesh mesh = ReadMesh(FLAGS_mesh).mesh;
   PrintMesh(mesh);

@@ -68,6 +68,13 @@ DEFINE_double(merge_max_drift,
               MergeOptions().max_drift_factor,
               "a cluster stays within this factor x merge_max_normal_deg of "
               "its plane, 0 = off");
+DEFINE_double(merge_max_member_rms,
+              MergeOptions().max_member_rms_m,
+              "largest rms distance of a cluster to its merged plane [m], 0 = "
+              "off");
+DEFINE_bool(merge_islands,
+            MergeOptions().absorb_islands,
+            "small planes inside a large one that lie close to it join it");
 
 // Simplification
 DEFINE_string(
@@ -244,6 +251,7 @@ void CheckNumbers() {
       {"merge_min_sheet_deg", 0, 90, false, true},
       {"merge_max_rms", 0},
       {"merge_max_drift", 0},
+      {"merge_max_member_rms", 0},
       {"simplify_faces", 0},
       {"simplify_faces_per_m2", 0, kMax, true},
       {"simplify_inner_target", 0},
@@ -287,6 +295,8 @@ void MeshOptions(ReconstructOptions* o) {
   o->merge.min_sheet_deg = FLAGS_merge_min_sheet_deg;
   o->merge.max_rms_m = FLAGS_merge_max_rms;
   o->merge.max_drift_factor = FLAGS_merge_max_drift;
+  o->merge.max_member_rms_m = FLAGS_merge_max_member_rms;
+  o->merge.absorb_islands = FLAGS_merge_islands;
   o->simplify.stop = Choose("simplify_stop", FLAGS_simplify_stop) == 0
                          ? SimplifyStop::kBudget
                          : SimplifyStop::kCounts;
@@ -393,6 +403,8 @@ std::string ProfileFlags(const std::string& name) {
   return "--simplify_stop=counts\n"
          "--merge_max_rms=0\n"
          "--merge_max_drift=0\n"
+         "--merge_max_member_rms=0\n"
+         "--merge_islands=false\n"
          "--plane_init=simplified\n"
          "--schedule=10x[C; Phi; T+F]\n"
          "--stop_decrease=0\n"

@@ -55,7 +55,7 @@ std::vector<SampledFrame> SampleFrames(const RgbdSequence& sequence,
     frame.frame_idx = usable[(2 * k + 1) * usable.size() / (2 * count)];
     cv::Mat depth;
     try {
-      depth = sequence.LoadDepth(frame.frame_idx);
+      depth = sequence.LoadDepthOfAnyRange(frame.frame_idx);
     } catch (const InputError& e) {
       problem = e.what();
       continue;

@@ -49,7 +49,7 @@ struct InputCheck {
   double depth_share = 0;         // pixels with sensor depth, all frames
   std::vector<Reading> readings;  // [0] is the one given
   int best = 0;                   // most agreeing pixels; the given one on ties
-  bool given_fits = false;  // conventions and orientation of the mesh
+  bool given_fits = false;        // conventions and orientation of the mesh
   // Share of the mesh's pixels, under the best reading, whose face is seen from
   // behind: a mesh that is inside out cannot be textured.
   double behind_share = 0;
@@ -57,9 +57,8 @@ struct InputCheck {
   std::string verdict;
 };
 
-// `sequence` must be opened with a depth range wide enough for every unit
-// (e.g. 0 to 1e6): depth cut by the wrong unit could not be read otherwise.
-// Throws InputError if no frame can be read, UnsolvableError if none of them
+// The depth range of the sequence's options does not matter. Throws InputError
+// if no frame can be read, UnsolvableError if none of them
 // has any depth.
 InputCheck CheckInput(const RgbdSequence& sequence,
                       const TriMesh& mesh,

@@ -112,7 +112,11 @@ void DropSmallComponents(int min_faces, TriMesh* mesh, CleanReport* report) {
     sets.Unite(f[0], f[2]);
   }
   std::vector<int> faces(mesh->NumVertices(), 0);
-  for (const auto& f : mesh->faces) ++faces[sets.Find(f[0])];
+  int largest = 0;
+  for (const auto& f : mesh->faces) {
+    largest = std::max(largest, ++faces[sets.Find(f[0])]);
+  }
+  min_faces = std::min(min_faces, largest);
   for (int count : faces) {
     report->small_components += count > 0 && count < min_faces;
   }
@@ -217,7 +221,7 @@ CleanReport CleanMesh(const CleanOptions& options, TriMesh* mesh) {
   if (mesh->faces.empty()) {
     throw InputError("no face of the mesh is left after cleaning (" +
                      report.Summary() +
-                     "); give a mesh with valid faces, or keep smaller pieces");
+                     "); give a mesh with valid faces");
   }
   CheckUnits(options, *mesh, &report);
   if (broken > 0 || report.non_finite_vertices > 0) {

@@ -17,8 +17,9 @@ struct CleanOptions {
   double weld_tolerance_m = 0;
   // Faces with less area are dropped. >= 0 [m^2].
   double min_face_area_m2 = 1e-14;
-  // Pieces (connected through vertices) with fewer faces are dropped; 0 keeps
-  // all. Floating specks of a fused scan are of this kind.
+  // Pieces (connected through vertices) with fewer faces are dropped, unless
+  // none is larger; 0 keeps all. Floating specks of a fused scan are of this
+  // kind.
   int min_component_faces = 20;
   // A bounding box with a diagonal outside this range raises a warning: is the
   // mesh in metres? [m].

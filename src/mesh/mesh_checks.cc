@@ -114,14 +114,20 @@ MeshChecks CheckMesh(const TriMesh& mesh) {
   return checks;
 }
 
-int CountFlippedFaces(const TriMesh& mesh, const PlanarPartition& partition) {
-  int flipped = 0;
+FlippedFaces FindFlippedFaces(const TriMesh& mesh,
+                              const PlanarPartition& partition) {
+  FlippedFaces flipped;
+  double area = 0, flipped_area = 0;
   for (size_t f = 0; f < mesh.NumFaces(); ++f) {
     const Eigen::Vector3d cross = mesh.FaceCross(f);
+    const double face_area = 0.5 * cross.norm();
     const auto& cluster = partition.clusters[partition.face_cluster[f]];
-    flipped +=
-        0.5 * cross.norm() >= kMinArea && cross.dot(cluster.plane.normal) <= 0;
+    area += face_area;
+    if (face_area < kMinArea || cross.dot(cluster.plane.normal) > 0) continue;
+    ++flipped.count;
+    flipped_area += face_area;
   }
+  if (area > 0) flipped.area_share = flipped_area / area;
   return flipped;
 }
 

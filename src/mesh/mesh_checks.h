@@ -24,7 +24,13 @@ struct MeshChecks {
 MeshChecks CheckMesh(const TriMesh& mesh);
 
 // Faces of positive area that look away from the plane of their cluster:
-// n_face . n_cluster <= 0.
-int CountFlippedFaces(const TriMesh& mesh, const PlanarPartition& partition);
+// n_face . n_cluster <= 0. Where a cluster stands for something round or noisy,
+// such faces are part of its shape.
+struct FlippedFaces {
+  int count = 0;
+  double area_share = 0;  // of the area of the mesh
+};
+FlippedFaces FindFlippedFaces(const TriMesh& mesh,
+                              const PlanarPartition& partition);
 
 }  // namespace facet

@@ -14,15 +14,9 @@
 namespace facet {
 namespace {
 
-void CheckOptions(const TriMesh& mesh, const PartitionOptions& options) {
+void CheckOptions(const PartitionOptions& options) {
   if (options.target_clusters < 1) {
     throw OptionsError("partition: target_clusters must be at least 1");
-  }
-  if (static_cast<size_t>(options.target_clusters) >= mesh.NumFaces()) {
-    throw OptionsError(
-        "partition: target_clusters is " +
-        std::to_string(options.target_clusters) + " but the mesh has only " +
-        std::to_string(mesh.NumFaces()) + " faces; lower --partition_clusters");
   }
   if (!(options.max_rms_m >= 0) || !(options.max_merge_energy >= 0) ||
       !(options.energy.alpha >= 0) || !(options.energy.tau >= 0) ||
@@ -138,7 +132,7 @@ std::vector<SurfaceMoments> ClusterMoments(const TriMesh& mesh,
 PlanarPartition PartitionMesh(const TriMesh& mesh,
                               const PartitionOptions& options,
                               PartitionReport* report) {
-  CheckOptions(mesh, options);
+  CheckOptions(options);
   PartitionReport unused;
   if (!report) report = &unused;
   *report = PartitionReport();
@@ -160,6 +154,12 @@ PlanarPartition PartitionMesh(const TriMesh& mesh,
   CompactLabels(count, &label);
   RefitClusters(mesh, &partition);
   report->rms_m = PartitionRms(mesh, partition);
+  if (static_cast<size_t>(options.target_clusters) > mesh.NumFaces()) {
+    AddWarning("partition: the mesh has only " +
+               std::to_string(mesh.NumFaces()) + " faces, fewer than the " +
+               std::to_string(options.target_clusters) +
+               " clusters asked for: every face starts as a plane");
+  }
   if (report->components > options.target_clusters) {
     AddWarning("partition: the mesh has " + std::to_string(report->components) +
                " separate pieces, more than the " +

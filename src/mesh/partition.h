@@ -48,8 +48,8 @@ struct PartitionReport {
 // The mesh must be clean (mesh/clean.h); non-manifold edges are allowed: all
 // their faces are neighbours. Clusters come in the order of their first faces.
 // Stops at the number of connected components if that is more than the target
-// (warning). Throws OptionsError for senseless options, also for a target that
-// is not below the number of faces. Deterministic, one thread; about 160 bytes
+// (warning). Of a mesh with fewer faces than the target every face becomes a
+// cluster (warning). Throws OptionsError for senseless options. Deterministic, one thread; about 160 bytes
 // a face beside the mesh.
 PlanarPartition PartitionMesh(const TriMesh& mesh,
                               const PartitionOptions& options,

@@ -55,7 +55,7 @@ SimplifyResult SimplifyByPlanes(const TriMesh& mesh,
   SimplifyReport& report = result.report;
   report.checks_before = CheckMesh(mesh);
   report.faces_before = static_cast<int>(mesh.NumFaces());
-  report.flipped_before = CountFlippedFaces(mesh, partition);
+  report.flipped_before = FindFlippedFaces(mesh, partition);
   report.border_edges_before = CountBorderEdges(mesh, partition.face_cluster);
 
   Collapser collapser(mesh, partition, options);
@@ -80,7 +80,7 @@ SimplifyResult SimplifyByPlanes(const TriMesh& mesh,
   }
   report.checks_after = CheckMesh(result.mesh);
   report.faces_after = static_cast<int>(result.mesh.NumFaces());
-  report.flipped_after = CountFlippedFaces(result.mesh, result.partition);
+  report.flipped_after = FindFlippedFaces(result.mesh, result.partition);
   report.border_edges_after =
       CountBorderEdges(result.mesh, result.partition.face_cluster);
   return result;

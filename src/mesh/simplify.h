@@ -82,7 +82,7 @@ struct SimplifyReport {
   int collapses = 0;
   double max_error_m = 0;  // largest rms error of a collapse that was made
   MeshChecks checks_before, checks_after;
-  int flipped_before = 0, flipped_after = 0;  // CountFlippedFaces
+  FlippedFaces flipped_before, flipped_after;
 };
 
 struct SimplifyResult {

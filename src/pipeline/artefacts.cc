@@ -3,6 +3,7 @@
 #include "pipeline/artefacts.h"
 
 #include <filesystem>
+#include <sstream>
 
 #include "costs/se3_manifold.h"
 #include "util/archive.h"
@@ -23,17 +24,39 @@ json SettingsUpTo(const ReconstructOptions& options, Stage stage) {
   return settings;
 }
 
-void CheckSettings(const std::string& path, const json& was, const json& now) {
+// "--name=value" of the flag in the lines of a flags.txt, "" if it is not
+// there.
+std::string FlagLine(const std::string& flags_text, const std::string& name) {
+  const std::string begin = "--" + name + "=";
+  std::istringstream lines(flags_text);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.compare(0, begin.size(), begin) == 0) return line;
+  }
+  return "";
+}
+
+// Throws OptionsError that names the first flag in which an artefact (`meta`)
+// and the options differ, and both values.
+void CheckSettings(const ReconstructOptions& options,
+                   Stage stage,
+                   const std::string& path,
+                   const json& meta) {
+  const json was = meta.value("settings", json::object());
+  const json now = SettingsUpTo(options, stage);
   if (was == now) return;
-  for (const auto& [stage, settings] : now.items()) {
+  for (const auto& [name, settings] : now.items()) {
     for (const auto& [key, value] : settings.items()) {
-      const json old = was.contains(stage) && was[stage].contains(key)
-                           ? was[stage][key]
-                           : json();
-      if (old == value) continue;
-      throw OptionsError(path + " was made with " + stage + "." + key + " = " +
-                         old.dump() + ", now it is " + value.dump() +
-                         ": start again with --from_stage=" + stage +
+      if (!was.contains(name) || !was[name].contains(key)) continue;
+      if (was[name][key] == value) continue;
+      const std::string flag = FlagOfSetting(key);
+      std::string before = FlagLine(meta.value("flags", std::string()), flag);
+      std::string after = FlagLine(options.flags_text, flag);
+      if (before == after) {  // not a flag, or a file was replaced
+        before = "--" + flag + " = " + was[name][key].dump();
+        after = value.dump();
+      }
+      throw OptionsError(path + " was made with " + before + ", now it is " +
+                         after + ": start again with --from_stage=" + name +
                          " or give the old value");
     }
   }
@@ -49,18 +72,25 @@ ArchiveReader Open(const ReconstructOptions& options, Stage stage) {
                      StageName(stage) + " or an earlier stage first");
   }
   ArchiveReader reader(path);
-  CheckSettings(path, reader.meta().value("settings", json::object()),
-                SettingsUpTo(options, stage));
+  CheckSettings(options, stage, path, reader.meta());
   return reader;
 }
 
 void Write(const ReconstructOptions& options,
            Stage stage,
-           const json& report,
+           const StageRecord& record,
            ArchiveWriter* writer) {
   writer->meta["settings"] = SettingsUpTo(options, stage);
-  writer->meta["report"] = report;
+  writer->meta["flags"] = options.flags_text;
+  writer->meta["report"] = record.report;
+  writer->meta["warnings"] = record.warnings;
   writer->Write(ArtefactPath(options, stage));
+}
+
+void GetRecord(const ArchiveReader& reader, StageRecord* record) {
+  record->report = reader.meta().value("report", json());
+  record->warnings =
+      reader.meta().value("warnings", std::vector<std::string>());
 }
 
 // Eigen's classes have constructors; archives want plain numbers.
@@ -120,9 +150,16 @@ std::vector<double> FlattenClusters(const std::vector<PlaneCluster>& clusters) {
   std::vector<double> flat;
   for (const PlaneCluster& c : clusters) {
     flat.insert(flat.end(),
-                {c.plane.normal.x(), c.plane.normal.y(), c.plane.normal.z(),
-                 c.plane.offset, c.centroid.x(), c.centroid.y(), c.centroid.z(),
-                 c.area, c.rms, static_cast<double>(c.num_faces)});
+                {c.plane.normal.x(),
+                 c.plane.normal.y(),
+                 c.plane.normal.z(),
+                 c.plane.offset,
+                 c.centroid.x(),
+                 c.centroid.y(),
+                 c.centroid.z(),
+                 c.area,
+                 c.rms,
+                 static_cast<double>(c.num_faces)});
   }
   return flat;
 }
@@ -156,7 +193,7 @@ void Save(const ReconstructOptions& options,
   writer.Add("face_cluster", artefact.partition.face_cluster);
   writer.Add("clusters", FlattenClusters(artefact.partition.clusters));
   writer.Add("refitted_planes", Flatten(artefact.refitted_planes));
-  Write(options, stage, artefact.report, &writer);
+  Write(options, stage, artefact, &writer);
 }
 
 MeshArtefact LoadMeshArtefact(const ReconstructOptions& options, Stage stage) {
@@ -166,7 +203,7 @@ MeshArtefact LoadMeshArtefact(const ReconstructOptions& options, Stage stage) {
   artefact.partition.face_cluster = reader.Get<int>("face_cluster");
   artefact.partition.clusters = ClustersFrom(reader.Get<double>("clusters"));
   artefact.refitted_planes = PlanesFrom(reader.Get<double>("refitted_planes"));
-  artefact.report = reader.meta()["report"];
+  GetRecord(reader, &artefact);
   return artefact;
 }
 
@@ -174,7 +211,7 @@ void Save(const ReconstructOptions& options, const KeyframeArtefact& artefact) {
   ArchiveWriter writer;
   writer.Add("keyframes", artefact.keyframes);
   writer.Add("blur", artefact.blur);
-  Write(options, Stage::kKeyframes, artefact.report, &writer);
+  Write(options, Stage::kKeyframes, artefact, &writer);
 }
 
 KeyframeArtefact LoadKeyframeArtefact(const ReconstructOptions& options) {
@@ -182,7 +219,7 @@ KeyframeArtefact LoadKeyframeArtefact(const ReconstructOptions& options) {
   KeyframeArtefact artefact;
   artefact.keyframes = reader.Get<int>("keyframes");
   artefact.blur = reader.Get<double>("blur");
-  artefact.report = reader.meta()["report"];
+  GetRecord(reader, &artefact);
   return artefact;
 }
 
@@ -197,11 +234,10 @@ void Save(const ReconstructOptions& options,
   writer.Add("planes", Flatten(artefact.planes));
   writer.Add("warps", artefact.warps);
   const WarpLattice& l = artefact.lattice;
-  writer.Add("lattice",
-             std::vector<int>{l.columns, l.rows, l.width, l.height});
+  writer.Add("lattice", std::vector<int>{l.columns, l.rows, l.width, l.height});
   writer.Add("plane_texels", artefact.plane_texels);
   writer.Add("plane_frames", artefact.plane_frames);
-  Write(options, Stage::kPhotometric, artefact.report, &writer);
+  Write(options, Stage::kPhotometric, artefact, &writer);
 }
 
 PhotometricArtefact LoadPhotometricArtefact(const ReconstructOptions& options) {
@@ -218,25 +254,25 @@ PhotometricArtefact LoadPhotometricArtefact(const ReconstructOptions& options) {
   artefact.planes = PlanesFrom(reader.Get<double>("planes"));
   artefact.warps = reader.Get<double>("warps");
   const std::vector<int> lattice = reader.Get<int>("lattice");
-  artefact.lattice = {lattice.at(0), lattice.at(1), lattice.at(2),
-                      lattice.at(3)};
+  artefact.lattice = {
+      lattice.at(0), lattice.at(1), lattice.at(2), lattice.at(3)};
   artefact.plane_texels = reader.Get<size_t>("plane_texels");
   artefact.plane_frames = reader.Get<size_t>("plane_frames");
-  artefact.report = reader.meta()["report"];
+  GetRecord(reader, &artefact);
   return artefact;
 }
 
 void Save(const ReconstructOptions& options, const GeometryArtefact& artefact) {
   ArchiveWriter writer;
   AddMesh(artefact.mesh, &writer);
-  Write(options, Stage::kGeometry, artefact.report, &writer);
+  Write(options, Stage::kGeometry, artefact, &writer);
 }
 
 GeometryArtefact LoadGeometryArtefact(const ReconstructOptions& options) {
   const ArchiveReader reader = Open(options, Stage::kGeometry);
   GeometryArtefact artefact;
   artefact.mesh = GetMesh(reader);
-  artefact.report = reader.meta()["report"];
+  GetRecord(reader, &artefact);
   return artefact;
 }
 

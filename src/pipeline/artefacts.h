@@ -3,7 +3,7 @@
 //
 // Results of the stages and how they are kept in RUN/stages/<stage>.bin. Each
 // file carries the settings of its stage and of all before; going on from it
-// with other settings is refused (OptionsError naming the setting).
+// with other settings is refused (OptionsError naming the flag).
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -16,34 +16,36 @@
 
 namespace facet {
 
+// What a stage has to say, beside its result.
+struct StageRecord {
+  nlohmann::json report;              // the stage's part of report.json
+  std::vector<std::string> warnings;  // raised by the stage
+};
+
 // partition: the cleaned dense mesh. simplify: the light mesh.
-struct MeshArtefact {
+struct MeshArtefact : StageRecord {
   TriMesh mesh;
   PlanarPartition partition;
   std::vector<Plane> refitted_planes;  // simplify: fitted to the light mesh
-  nlohmann::json report;               // the stage's part of report.json
 };
 
-struct KeyframeArtefact {
+struct KeyframeArtefact : StageRecord {
   std::vector<int> keyframes;  // indices into the sequence's frames
   std::vector<double> blur;    // by frame index, NaN = not measured
-  nlohmann::json report;
 };
 
 // Poses, planes and warps after the schedule.
-struct PhotometricArtefact {
+struct PhotometricArtefact : StageRecord {
   std::vector<Pose> cam_from_world;  // colour camera, a keyframe
   std::vector<Plane> planes;
   std::vector<double> warps;  // empty = none
   WarpLattice lattice;
   std::vector<size_t> plane_texels, plane_frames;
-  nlohmann::json report;
 };
 
 // The final mesh after the fit; geometry keeps labels and texture coordinates.
-struct GeometryArtefact {
+struct GeometryArtefact : StageRecord {
   TriMesh mesh;
-  nlohmann::json report;
 };
 
 std::string ArtefactPath(const ReconstructOptions& options, Stage stage);
@@ -54,7 +56,7 @@ void Save(const ReconstructOptions&, const PhotometricArtefact&);
 void Save(const ReconstructOptions&, const GeometryArtefact&);
 
 // Throw InputError (missing: names the stage to run; damaged) and OptionsError
-// (made with other settings).
+// (made with other settings: names the flag and both values).
 MeshArtefact LoadMeshArtefact(const ReconstructOptions&, Stage);
 KeyframeArtefact LoadKeyframeArtefact(const ReconstructOptions&);
 PhotometricArtefact LoadPhotometricArtefact(const ReconstructOptions&);

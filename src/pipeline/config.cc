@@ -3,6 +3,7 @@
 #include "pipeline/config.h"
 
 #include <filesystem>
+#include <utility>
 
 namespace facet {
 namespace {
@@ -138,6 +139,50 @@ json StageSettings(const ReconstructOptions& options, Stage stage) {
       return ExportSettings(options);
   }
   return {};
+}
+
+std::string FlagOfSetting(const std::string& setting) {
+  static constexpr std::pair<const char*, const char*> kFlags[] = {
+      {"target_clusters", "partition_clusters"},
+      {"max_rms_m", "partition_max_rms"},
+      {"merge_planes", "merge"},
+      {"max_normal_deg", "merge_max_normal_deg"},
+      {"max_distance_m", "merge_max_distance"},
+      {"min_sheet_deg", "merge_min_sheet_deg"},
+      {"merge_max_rms_m", "merge_max_rms"},
+      {"max_member_rms_m", "merge_max_member_rms"},
+      {"max_drift_factor", "merge_max_drift"},
+      {"absorb_islands", "merge_islands"},
+      {"stop", "simplify_stop"},
+      {"inner_target", "simplify_inner_target"},
+      {"border_ratio", "simplify_border_ratio"},
+      {"passes", "simplify_passes"},
+      {"target_faces", "simplify_faces"},
+      {"faces_per_m2", "simplify_faces_per_m2"},
+      {"min_depth_m", "min_depth"},
+      {"max_depth_m", "max_depth"},
+      {"window", "keyframe_window"},
+      {"texel_size_m", "texel_size"},
+      {"stride", "texel_stride"},
+      {"smoothing_sigma_px", "smoothing"},
+      {"stop_relative_decrease", "stop_decrease"},
+      {"max_plane_iterations", "plane_iterations"},
+      {"max_pose_iterations", "pose_iterations"},
+      {"max_joint_iterations", "joint_iterations"},
+      {"plane_step", "plane"},
+      {"remove_common_motion", "gauge"},
+      {"pose_prior", "gauge"},
+      {"prior_rotation_rad", "gauge_sigma_deg"},
+      {"prior_translation_m", "gauge_sigma_mm"},
+      {"prior_strength", "gauge_strength"},
+      {"image_margin_px", "image_margin"},
+      {"freedom", "geometry_freedom"},
+      {"band_m", "geometry_band"},
+      {"iterations", "geometry_iterations"}};
+  for (const auto& [name, flag] : kFlags) {
+    if (setting == name) return flag;
+  }
+  return setting;
 }
 
 }  // namespace facet

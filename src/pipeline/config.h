@@ -55,4 +55,8 @@ struct ReconstructOptions {
 // stage before: what the resume guard compares and report.json records.
 nlohmann::json StageSettings(const ReconstructOptions& options, Stage stage);
 
+// The flag of facet-reconstruct that determines a setting of StageSettings, for
+// messages; the setting's own name if there is no other.
+std::string FlagOfSetting(const std::string& setting);
+
 }  // namespace facet

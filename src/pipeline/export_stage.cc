@@ -175,13 +175,15 @@ json ExportRun(const ReconstructOptions& options, const ExportInput& input) {
   if (options.previews) WritePreviews(options, input, model);
 
   const MeshChecks checks = CheckMesh(input.final_mesh);
+  const FlippedFaces flipped =
+      FindFlippedFaces(input.final_mesh, input.simplified.partition);
   return {{"mesh_checks",
            {{"non_manifold_edges", checks.non_manifold_edges},
             {"non_manifold_vertices", checks.non_manifold_vertices},
             {"duplicate_faces", checks.duplicate_faces},
             {"degenerate_faces", checks.degenerate_faces},
-            {"flipped_faces",
-             CountFlippedFaces(input.final_mesh, input.simplified.partition)},
+            {"flipped_faces", flipped.count},
+            {"flipped_area_share", flipped.area_share},
             {"components", checks.components}}},
           {"texture",
            {{"pages", input.atlas.page_size.size()},

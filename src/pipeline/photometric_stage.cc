@@ -130,7 +130,7 @@ PhotometricResult RunPhotometricStage(
     s.tiles = SortTexelsIntoTiles(planes, anchors, options.tile_texels,
                                   &s.texels);
     s.observations =
-        ComputeObservations(s.texels, planes, mesh, scene, sequence, keyframes,
+        ComputeObservations(s.texels, planes, scene, sequence, keyframes,
                             cam_from_world, visibility, &s.counts);
     CheckObserved(s.observations, s.counts, static_cast<int>(keyframes.size()));
     return s;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/reconstruct.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -10,6 +11,7 @@
 #include "mesh/mesh_io.h"
 #include "pipeline/artefacts.h"
 #include "pipeline/export_stage.h"
+#include "pipeline/preflight.h"
 #include "pipeline/report.h"
 #include "pipeline/stage_clock.h"
 #include "util/atomic_file.h"
@@ -67,6 +69,17 @@ class Run {
     }
   }
 
+  StageClock Begin(const char* stage) {
+    warnings_before_ = Warnings().size();
+    return StageClock(stage);
+  }
+
+  // Those of the present stage: kept with its result, for runs that resume.
+  std::vector<std::string> StageWarnings() const {
+    const std::vector<std::string> all = Warnings();
+    return {all.begin() + warnings_before_, all.end()};
+  }
+
   // Called when all input is read and accepted: a refused command leaves the
   // run folder as it was. The report of an earlier run would contradict the
   // files to come.
@@ -87,10 +100,21 @@ class Run {
     }
   }
 
+  void AnnouncePlan() {
+    const SceneSize size = MeasureScene(options_, dense_.mesh, *sequence_);
+    const MemoryEstimate estimate = EstimateMemory(options_, size);
+    const double available = AvailableMemoryMb();
+    PrintLine("plan          " + DescribePlan(size, estimate, available));
+    report_["memory"] = {{"estimate_mb", estimate.PeakMb()},
+                         {"available_mb", available}};
+  }
+
   void RunPartition() {
-    StageClock clock("partition");
+    StageClock clock = Begin("partition");
     if (FromFile(Stage::kPartition)) {
       dense_ = LoadMeshArtefact(options_, Stage::kPartition);
+      RestoreWarnings(dense_.warnings);
+      AnnouncePlan();
       stages_.push_back(clock.Finish("read"));
       return;
     }
@@ -100,12 +124,15 @@ class Run {
     const size_t vertices = dense_.mesh.NumVertices();
     const CleanReport cleaned = Clean();
     const SplitReport split = SplitNonManifold(&dense_.mesh);
+    AnnouncePlan();
     BeginWriting();
     if (split.non_manifold_edges + split.split_vertices > 0) {
-      AddWarning(Format("%s: opened %zu non-manifold edges and split %zu "
-                        "non-manifold vertices",
-                        options_.mesh_path.c_str(), split.non_manifold_edges,
-                        split.split_vertices));
+      AddWarning(
+          Format("%s: opened %zu non-manifold edges and split %zu "
+                 "non-manifold vertices",
+                 options_.mesh_path.c_str(),
+                 split.non_manifold_edges,
+                 split.split_vertices));
     }
     PartitionReport partition_report;
     const PlanarPartition clusters =
@@ -113,27 +140,30 @@ class Run {
     MergeReport merge_report;
     dense_.partition =
         MergePlanes(dense_.mesh, clusters, options_.merge, &merge_report);
-    dense_.report = {
-        {"input", {{"vertices", vertices}, {"faces", faces}}},
-        {"cleaning", cleaned.Summary()},
-        {"split_vertices", split.split_vertices},
-        {"clusters", clusters.clusters.size()},
-        {"rms_before_merging_m", partition_report.rms_m},
-        {"planes", dense_.partition.clusters.size()},
-        {"rms_after_merging_m", merge_report.rms_m},
-        {"islands_absorbed", merge_report.islands}};
+    dense_.report = {{"input", {{"vertices", vertices}, {"faces", faces}}},
+                     {"cleaning", cleaned.Summary()},
+                     {"split_vertices", split.split_vertices},
+                     {"clusters", clusters.clusters.size()},
+                     {"rms_before_merging_m", partition_report.rms_m},
+                     {"planes", dense_.partition.clusters.size()},
+                     {"rms_after_merging_m", merge_report.rms_m},
+                     {"islands_absorbed", merge_report.islands}};
+    dense_.warnings = StageWarnings();
     Save(options_, Stage::kPartition, dense_);
     stages_.push_back(clock.Finish(
         Format("%zu faces, %zu clusters (rms %.2f mm), %zu planes (%.2f mm)",
-               dense_.mesh.NumFaces(), clusters.clusters.size(),
-               1e3 * partition_report.rms_m, dense_.partition.clusters.size(),
+               dense_.mesh.NumFaces(),
+               clusters.clusters.size(),
+               1e3 * partition_report.rms_m,
+               dense_.partition.clusters.size(),
                1e3 * merge_report.rms_m)));
   }
 
   void RunSimplify() {
-    StageClock clock("simplify");
+    StageClock clock = Begin("simplify");
     if (FromFile(Stage::kSimplify)) {
       simplified_ = LoadMeshArtefact(options_, Stage::kSimplify);
+      RestoreWarnings(simplified_.warnings);
       stages_.push_back(clock.Finish("read"));
       return;
     }
@@ -156,24 +186,31 @@ class Run {
     simplified_.report = {{"faces", r.faces_after},
                           {"collapses", r.collapses},
                           {"max_error_m", r.max_error_m},
+                          {"flipped_area_share_before",
+                           r.flipped_before.area_share},
+                          {"flipped_area_share", r.flipped_after.area_share},
                           {"border_edges_before", r.border_edges_before},
                           {"border_edges_after", r.border_edges_after}};
+    simplified_.warnings = StageWarnings();
     Save(options_, Stage::kSimplify, simplified_);
     stages_.push_back(clock.Finish(
         Format("%zu vertices, %zu faces (%.1f %%)",
-               simplified_.mesh.NumVertices(), simplified_.mesh.NumFaces(),
+               simplified_.mesh.NumVertices(),
+               simplified_.mesh.NumFaces(),
                100.0 * static_cast<double>(simplified_.mesh.NumFaces()) /
                    static_cast<double>(dense_.mesh.NumFaces()))));
   }
 
   void RunKeyframes() {
-    StageClock clock("keyframes");
+    StageClock clock = Begin("keyframes");
     if (FromFile(Stage::kKeyframes)) {
       keyframes_ = LoadKeyframeArtefact(options_);
+      RestoreWarnings(keyframes_.warnings);
       stages_.push_back(clock.Finish("read"));
       return;
     }
     BeginWriting();
+    WarnOfConventions(*sequence_, dense_.mesh, options_.visibility);
     keyframes_.keyframes =
         SelectKeyframes(*sequence_, options_.keyframes, &keyframes_.blur);
     size_t usable = 0, held_out = 0;
@@ -186,10 +223,13 @@ class Run {
                          {"usable", usable},
                          {"held_out", held_out},
                          {"keyframes", keyframes_.keyframes.size()}};
+    keyframes_.warnings = StageWarnings();
     Save(options_, keyframes_);
-    stages_.push_back(clock.Finish(
-        Format("%zu of %zu usable frames, %zu held out",
-               keyframes_.keyframes.size(), usable, held_out)));
+    stages_.push_back(
+        clock.Finish(Format("%zu of %zu usable frames, %zu held out",
+                            keyframes_.keyframes.size(),
+                            usable,
+                            held_out)));
   }
 
   // What several later stages need: poses, images, atlas.
@@ -198,10 +238,11 @@ class Run {
     for (const int k : keyframes_.keyframes) {
       initial_poses_.push_back(sequence_->color_cam_from_world(k));
     }
-    images_ = LoadKeyframeImages(*sequence_, keyframes_.keyframes,
+    images_ = LoadKeyframeImages(*sequence_,
+                                 keyframes_.keyframes,
                                  options_.photometric.smoothing_sigma_px);
-    atlas_ = BuildAtlas(simplified_.mesh, simplified_.partition,
-                        options_.atlas);
+    atlas_ =
+        BuildAtlas(simplified_.mesh, simplified_.partition, options_.atlas);
     if (options_.plane_init == PlaneInit::kSimplified) {
       initial_planes_ = simplified_.refitted_planes;
     } else {
@@ -212,18 +253,26 @@ class Run {
   }
 
   void RunPhotometric() {
-    StageClock clock("photometric");
+    StageClock clock = Begin("photometric");
     if (FromFile(Stage::kPhotometric)) {
       photometric_ = LoadPhotometricArtefact(options_);
+      RestoreWarnings(photometric_.warnings);
       stages_.push_back(clock.Finish("read"));
       return;
     }
     BeginWriting();
     LoadForTexture();
-    const PhotometricResult result = RunPhotometricStage(
-        simplified_.mesh, simplified_.partition, initial_planes_, atlas_,
-        *sequence_, keyframes_.keyframes, initial_poses_, images_,
-        options_.visibility, options_.photometric, PrintLine);
+    const PhotometricResult result = RunPhotometricStage(simplified_.mesh,
+                                                         simplified_.partition,
+                                                         initial_planes_,
+                                                         atlas_,
+                                                         *sequence_,
+                                                         keyframes_.keyframes,
+                                                         initial_poses_,
+                                                         images_,
+                                                         options_.visibility,
+                                                         options_.photometric,
+                                                         PrintLine);
     WriteFileAtomically(options_.output_path + "/trace.csv",
                         TraceCsv(result.trace));
     photometric_.cam_from_world = result.cam_from_world;
@@ -232,60 +281,59 @@ class Run {
     photometric_.lattice = result.lattice;
     photometric_.plane_texels = result.plane_texels;
     photometric_.plane_frames = result.plane_frames;
-    WarnIfDepthDisagrees(result.visibility);
     const RigidMotion slide =
         CommonMotion(initial_poses_, result.cam_from_world);
     photometric_.report = PhotometricReport(result, slide);
+    photometric_.warnings = StageWarnings();
     Save(options_, photometric_);
     stages_.push_back(clock.Finish(Format(
         "%zu texels, %zu observations, rms grey %.2f -> %.2f, slide %.1f mm",
-        result.texels_observed, result.initial.observations,
-        result.initial.rms_grey, result.final_terms.rms_grey, slide.mm)));
-  }
-
-  // Some chance agreement lets a scan in a wrong convention through; its model
-  // would be a black one.
-  static void WarnIfDepthDisagrees(const VisibilityCounts& v) {
-    const size_t agreeing =
-        v.used + v.mesh_edge + v.occluded + v.too_few_views;
-    const size_t others = v.depth_disagrees + v.depth_missing;
-    if (agreeing >= 0.15 * static_cast<double>(agreeing + others)) return;
-    AddWarning(Format("the sensor depth agrees with the mesh at only %.0f %% of "
-                      "the texels in the images: poses, depth unit or "
-                      "extrinsics may be wrong, run facet-check-input",
-                      100.0 * static_cast<double>(agreeing) /
-                          static_cast<double>(agreeing + others)));
+        result.texels_observed,
+        result.initial.observations,
+        result.initial.rms_grey,
+        result.final_terms.rms_grey,
+        slide.mm)));
   }
 
   void RunGeometry() {
-    StageClock clock("geometry");
+    StageClock clock = Begin("geometry");
     if (FromFile(Stage::kGeometry)) {
       geometry_ = LoadGeometryArtefact(options_);
+      RestoreWarnings(geometry_.warnings);
       stages_.push_back(clock.Finish("read"));
       return;
     }
     BeginWriting();
     geometry_.mesh = simplified_.mesh;
-    const GeometrySummary summary =
-        FitGeometry(simplified_.partition, photometric_.planes,
-                    options_.atlas.texel_size_m, options_.geometry,
-                    &geometry_.mesh);
+    const GeometrySummary summary = FitGeometry(simplified_.partition,
+                                                photometric_.planes,
+                                                options_.atlas.texel_size_m,
+                                                options_.geometry,
+                                                &geometry_.mesh);
     geometry_.report = GeometryReport(summary);
+    geometry_.warnings = StageWarnings();
     Save(options_, geometry_);
-    stages_.push_back(clock.Finish(
-        Format("rms to planes %.2f -> %.2f mm, mean move %.2f mm",
-               1e3 * summary.plane_rms_before, 1e3 * summary.plane_rms_after,
-               1e3 * summary.mean_move_m)));
+    stages_.push_back(
+        clock.Finish(Format("rms to planes %.2f -> %.2f mm, mean move %.2f mm",
+                            1e3 * summary.plane_rms_before,
+                            1e3 * summary.plane_rms_after,
+                            1e3 * summary.mean_move_m)));
   }
 
   void RunExport() {
-    StageClock clock("export");
+    StageClock clock = Begin("export");
     BeginWriting();
     LoadForTexture();
-    const ExportInput input = {
-        *sequence_,      dense_,       simplified_,   keyframes_.keyframes,
-        initial_poses_,  initial_planes_, photometric_, geometry_.mesh,
-        atlas_,          images_};
+    const ExportInput input = {*sequence_,
+                               dense_,
+                               simplified_,
+                               keyframes_.keyframes,
+                               initial_poses_,
+                               initial_planes_,
+                               photometric_,
+                               geometry_.mesh,
+                               atlas_,
+                               images_};
     export_report_ = ExportRun(options_, input);
     stages_.push_back(clock.Finish("run folder " + options_.output_path));
   }
@@ -312,9 +360,15 @@ class Run {
       settings[StageName(stage)] = StageSettings(options_, stage);
     }
     report_["options"] = settings;
-    report_["warnings"] = Warnings();
-    WriteFileAtomically(options_.output_path + "/report.json",
-                        report_.dump(1));
+    // Images are read again by a resumed run, and say the same again.
+    json warnings = json::array();
+    for (const std::string& w : Warnings()) {
+      if (std::find(warnings.begin(), warnings.end(), w) == warnings.end()) {
+        warnings.push_back(w);
+      }
+    }
+    report_["warnings"] = warnings;
+    WriteFileAtomically(options_.output_path + "/report.json", report_.dump(1));
     return report_;
   }
 
@@ -329,6 +383,7 @@ class Run {
   KeyframeImages images_;
   Atlas atlas_;
   bool writing_ = false;
+  ptrdiff_t warnings_before_ = 0;
   json stages_ = json::array(), export_report_, report_ = json::object();
 };
 

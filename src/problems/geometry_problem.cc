@@ -13,6 +13,7 @@
 
 #include "costs/barycentric_fit.h"
 #include "costs/laplacian.h"
+#include "problems/geometry_repair.h"
 #include "util/errors.h"
 #include "util/warnings.h"
 
@@ -24,7 +25,6 @@ using Corners = Eigen::Matrix3d;  // rows = corners of a face
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
 constexpr double kReferenceSpacing = 0.0025;  // of the paper [m]
-constexpr double kMinArea = 1e-12;            // [m^2]
 
 void CheckOptions(const GeometryOptions& options, double texel_spacing_m) {
   const auto require = [](bool ok, const char* what) {
@@ -295,65 +295,6 @@ double Fit::PlaneRms(const Positions& x) const {
   return weight > 0 ? std::sqrt(sum / weight) : 0;
 }
 
-// A face that the step spoilt: turned over against itself or its plane, or
-// collapsed. Faces without area cannot be spoilt.
-bool IsSpoilt(const Eigen::Vector3d& before,
-              const Eigen::Vector3d& after,
-              const Eigen::Vector3d& normal) {
-  if (before.norm() < 2 * kMinArea) return false;
-  return after.dot(before) <= 0 || after.norm() < 2 * kMinArea ||
-         (after.dot(normal) <= 0 && before.dot(normal) > 0);
-}
-
-// Blends vertices of spoilt faces back, v = v0 + t (v - v0): t is halved, and 0
-// after five times. Ends with no spoilt face, at the latest when all are back.
-void RepairFaces(const TriMesh& before,
-                 const PlanarPartition& labels,
-                 const std::vector<Plane>& planes,
-                 TriMesh* mesh,
-                 GeometrySummary* summary) {
-  const std::vector<Eigen::Vector3d> solved = mesh->vertices;
-  std::vector<int> halvings(solved.size(), 0);
-  for (bool again = true; again;) {
-    again = false;
-    std::vector<uint8_t> marked(solved.size(), 0);
-    for (size_t f = 0; f < mesh->NumFaces(); ++f) {
-      if (!IsSpoilt(before.FaceCross(f),
-                    mesh->FaceCross(f),
-                    planes[labels.face_cluster[f]].normal)) {
-        continue;
-      }
-      for (const int v : mesh->faces[f]) {
-        if (halvings[v] <= 5) marked[v] = again = true;
-      }
-    }
-    for (size_t v = 0; v < solved.size(); ++v) {
-      if (!marked[v]) continue;
-      const double t = ++halvings[v] > 5 ? 0 : std::ldexp(1.0, -halvings[v]);
-      mesh->vertices[v] =
-          before.vertices[v] + t * (solved[v] - before.vertices[v]);
-    }
-  }
-  for (const int n : halvings) summary->restored_vertices += n > 0;
-}
-
-void CountFaces(const TriMesh& before,
-                const PlanarPartition& labels,
-                const std::vector<Plane>& planes,
-                const TriMesh& mesh,
-                GeometrySummary* summary) {
-  for (size_t f = 0; f < mesh.NumFaces(); ++f) {
-    const Eigen::Vector3d& normal = planes[labels.face_cluster[f]].normal;
-    const Eigen::Vector3d old_cross = before.FaceCross(f);
-    const Eigen::Vector3d new_cross = mesh.FaceCross(f);
-    const bool had_area = old_cross.norm() >= 2 * kMinArea;
-    summary->flipped_faces_before += had_area && old_cross.dot(normal) <= 0;
-    summary->flipped_faces += had_area && new_cross.dot(normal) <= 0;
-    summary->turned_faces += had_area && new_cross.dot(old_cross) <= 0;
-    summary->degenerate_faces += had_area && new_cross.norm() < 2 * kMinArea;
-  }
-}
-
 }  // namespace
 
 GeometrySummary FitGeometry(const PlanarPartition& labels,
@@ -383,8 +324,8 @@ GeometrySummary FitGeometry(const PlanarPartition& labels,
                " vertices wanted to move farther than max_move_m and were "
                "stopped there");
   }
-  RepairFaces(before, labels, planes, mesh, &summary);
-  CountFaces(before, labels, planes, *mesh, &summary);
+  summary.restored_vertices = RepairFaces(before, labels, planes, mesh);
+  CountSpoiltFaces(before, labels, planes, *mesh, &summary);
 
   for (size_t v = 0; v < mesh->NumVertices(); ++v) {
     const double moved = (mesh->vertices[v] - before.vertices[v]).norm();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <limits>
 #include <map>
 
 #include "rgbd/image_files.h"
@@ -105,16 +106,21 @@ class BundleFusionSequence : public RgbdSequence {
   }
 
   cv::Mat LoadDepth(int frame_idx) const override {
-    const std::string& file = frames_[frame_idx].depth_path;
-    const cv::Mat raw = ReadRawDepthImage(file);
-    CheckSize(raw, calibration_.depth, file);
-    return DepthInMetres(raw,
-                         calibration_.depth_shift,
-                         options_.min_depth_m,
-                         options_.max_depth_m);
+    return DepthWithin(frame_idx, options_.min_depth_m, options_.max_depth_m);
+  }
+
+  cv::Mat LoadDepthOfAnyRange(int frame_idx) const override {
+    return DepthWithin(frame_idx, 0, std::numeric_limits<double>::infinity());
   }
 
  private:
+  cv::Mat DepthWithin(int frame_idx, double min_m, double max_m) const {
+    const std::string& file = frames_[frame_idx].depth_path;
+    const cv::Mat raw = ReadRawDepthImage(file);
+    CheckSize(raw, calibration_.depth, file);
+    return DepthInMetres(raw, calibration_.depth_shift, min_m, max_m);
+  }
+
   static void CheckSize(const cv::Mat& image,
                         const Pinhole& camera,
                         const std::string& file) {

@@ -66,6 +66,11 @@ class RgbdSequence {
   // (raw 0, raw 65535, outside the range of the options).
   virtual cv::Mat LoadDepth(int frame_idx) const = 0;
 
+  // The same without a range, for depth in a unit that is in doubt.
+  virtual cv::Mat LoadDepthOfAnyRange(int frame_idx) const {
+    return LoadDepth(frame_idx);
+  }
+
  protected:
   RgbdCalibration calibration_;
   std::vector<Frame> frames_;

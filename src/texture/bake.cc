@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "rgbd/blur.h"
+#include "texture/bake_colors.h"
 #include "texture/bake_texels.h"
 #include "texture/fill_texture.h"
 #include "texture/rgb_sampler.h"
@@ -31,37 +31,6 @@ struct TileView {
   int keyframe = 0;
   const uint64_t* words = nullptr;
 };
-
-// One image lookup and what it counts.
-struct ColorSample {
-  Vector3f rgb = Vector3f::Zero();  // 0-255
-  float weight = 0;                 // under e = 1; 0 = not there
-};
-
-float Luma(const Vector3f& rgb) {
-  return (0.299f * rgb.x() + 0.587f * rgb.y() + 0.114f * rgb.z()) / 255.0f;
-}
-
-// Sharpness of every keyframe relative to the median one.
-std::vector<float> Sharpness(const KeyframeImages& images, double power) {
-  std::vector<float> sharpness(images.size(), 1.0f);
-  if (!(power > 0) || images.size() == 0) return sharpness;
-  ParallelFor(0, images.size(), [&](size_t k) {
-    const cv::Mat& luma = images.luma[k];
-    const ImageView<float> view = {luma.ptr<float>(),
-                                   luma.cols,
-                                   luma.rows,
-                                   static_cast<ptrdiff_t>(luma.step1())};
-    sharpness[k] = static_cast<float>(1 - CreteBlur(view));
-  });
-  std::vector<float> sorted = sharpness;
-  std::sort(sorted.begin(), sorted.end());
-  const float median = sorted[sorted.size() / 2];
-  for (float& s : sharpness) {
-    s = median > 0 ? std::max(s / median, 1e-3f) : 1.0f;
-  }
-  return sharpness;
-}
 
 class Baker {
  public:
@@ -279,7 +248,11 @@ class Baker {
       }
     }
     if (options_.robust_luma > 0) {
-      DropOutliers(n, owned, views.size(), &samples, &report.dropped);
+      report.dropped = DropOutliers(n,
+                                    owned,
+                                    views.size(),
+                                    static_cast<float>(options_.robust_luma),
+                                    &samples);
     }
     const std::vector<ColorSample> mean = WeightedMean(
         samples, n, views.size(), static_cast<float>(options_.best_view_power));
@@ -290,65 +263,6 @@ class Baker {
       if (i >= owned) continue;
       ++report.seen;
       report.mild += !(seen_well[i / 64] >> (i % 64) & 1);
-    }
-  }
-
-  static std::vector<ColorSample> WeightedMean(
-      const std::vector<ColorSample>& samples,
-      size_t n,
-      size_t num_views,
-      float power) {
-    std::vector<ColorSample> sum(n);
-    for (size_t v = 0; v < num_views; ++v) {
-      for (size_t i = 0; i < n; ++i) {
-        const ColorSample& sample = samples[n * v + i];
-        if (!(sample.weight > 0)) continue;
-        const float w = power == 1
-                            ? sample.weight
-                            : std::exp2(power * std::log2(sample.weight));
-        sum[i].rgb += w * sample.rgb;
-        sum[i].weight += w;
-      }
-    }
-    for (ColorSample& s : sum) {
-      if (s.weight > 0) s.rgb /= s.weight;
-    }
-    return sum;
-  }
-
-  // Takes away samples whose luma is far from the weighted median.
-  void DropOutliers(size_t n,
-                    size_t owned,
-                    size_t num_views,
-                    std::vector<ColorSample>* samples,
-                    size_t* dropped) const {
-    const float limit = static_cast<float>(options_.robust_luma);
-    std::vector<std::pair<float, float>> lumas;  // luma, weight
-    for (size_t i = 0; i < n; ++i) {
-      lumas.clear();
-      float total = 0;
-      for (size_t v = 0; v < num_views; ++v) {
-        const ColorSample& sample = (*samples)[n * v + i];
-        if (!(sample.weight > 0)) continue;
-        lumas.emplace_back(Luma(sample.rgb), sample.weight);
-        total += sample.weight;
-      }
-      if (lumas.size() < 2) continue;
-      std::sort(lumas.begin(), lumas.end());
-      float sum = 0, median = lumas.back().first;
-      for (const auto& [luma, weight] : lumas) {
-        sum += weight;
-        if (2 * sum < total) continue;
-        median = luma;
-        break;
-      }
-      for (size_t v = 0; v < num_views; ++v) {
-        ColorSample& sample = (*samples)[n * v + i];
-        if (!(sample.weight > 0)) continue;
-        if (std::abs(Luma(sample.rgb) - median) <= limit) continue;
-        sample.weight = 0;
-        *dropped += i < owned;
-      }
     }
   }
 

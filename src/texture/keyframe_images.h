@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The facet authors
 // SPDX-License-Identifier: MIT
 //
-// The colour images of all keyframes, decoded once and kept: 9 bytes a pixel
+// The colour images of all keyframes, decoded once and kept: 11 bytes a pixel
 // (185 frames of 640 x 480: 0.6 GB with all three kinds).
 #pragma once
 

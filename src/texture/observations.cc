@@ -63,7 +63,6 @@ std::vector<TexelBlock> MakeBlocks(const TexelSet& texels,
 
 Observations ComputeObservations(const TexelSet& texels,
                                  const std::vector<Plane>& planes,
-                                 const TriMesh& /*mesh*/,
                                  const RayScene& scene,
                                  const RgbdSequence& sequence,
                                  const std::vector<int>& keyframes,

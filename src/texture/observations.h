@@ -60,13 +60,12 @@ struct VisibilityCounts {
 // (distance, image, angle, sensor depth) and by the ray to its mesh point p
 // (occlusion); see texture/visibility.h.
 //   planes      by cluster id: n.x + w = 0
-//   mesh, scene the simplified mesh the texels lie on
+//   scene       the simplified mesh the texels lie on
 //   keyframes   indices into sequence.frames()
 //   color_cam_from_world  one a keyframe
 // Depth images that do not decode throw InputError. `counts` may be null.
 Observations ComputeObservations(const TexelSet& texels,
                                  const std::vector<Plane>& planes,
-                                 const TriMesh& mesh,
                                  const RayScene& scene,
                                  const RgbdSequence& sequence,
                                  const std::vector<int>& keyframes,

@@ -18,6 +18,10 @@ double PeakRssMb();
 // Does nothing where the system does not allow it.
 void ResetPeakRss();
 
+// Memory that can still be had without swapping, within the limit of the
+// control group if there is one [MB]; 0 = the system does not say.
+double AvailableMemoryMb();
+
 // Wall and CPU time since construction.
 class Stopwatch {
  public:

@@ -23,6 +23,11 @@ void AddWarning(const std::string& sentence) {
   Store().push_back(sentence);
 }
 
+void RestoreWarnings(const std::vector<std::string>& sentences) {
+  const std::lock_guard<std::mutex> lock(mutex);
+  Store().insert(Store().end(), sentences.begin(), sentences.end());
+}
+
 std::vector<std::string> Warnings() {
   const std::lock_guard<std::mutex> lock(mutex);
   return Store();

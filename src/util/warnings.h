@@ -13,6 +13,10 @@ namespace facet {
 // Logs `sentence` and remembers it. Thread-safe.
 void AddWarning(const std::string& sentence);
 
+// Remembers warnings of an earlier process whose result is used again; logs
+// nothing.
+void RestoreWarnings(const std::vector<std::string>& sentences);
+
 // All warnings of this process so far, in order.
 std::vector<std::string> Warnings();
 

@@ -5,6 +5,7 @@
 // warning and a good model: never in an abort, a hang or a black model.
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <limits>
 
 #include "mesh/mesh_io.h"
@@ -260,6 +261,35 @@ TEST(CliBadInput, PosesThatAreNotRigid) {
                 kExitInput,
                 {"rigid", "pose.txt"});
   ExpectNothingIn(dir / "none");
+}
+
+// The room as a box of twelve faces: fewer than clusters are asked for.
+TEST(CliBadInput, MeshOfAFewFaces) {
+  const TempDir dir;
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& v : DenseMesh().vertices) box.extend(v);
+  TriMesh mesh;
+  for (int i = 0; i < 8; ++i) {
+    mesh.vertices.push_back(
+        box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)));
+  }
+  // Seen from inside; bit k of a corner is its side along axis k.
+  const std::array<int, 4> sides[] = {{0, 1, 3, 2},
+                                      {4, 6, 7, 5},
+                                      {0, 4, 5, 1},
+                                      {2, 3, 7, 6},
+                                      {0, 2, 6, 4},
+                                      {1, 5, 7, 3}};
+  for (const std::array<int, 4>& side : sides) {
+    mesh.faces.push_back({side[0], side[1], side[2]});
+    mesh.faces.push_back({side[0], side[2], side[3]});
+  }
+  const Outcome outcome = ReconstructMesh(dir, mesh);
+  ExpectSuccess(outcome);
+  ExpectWarning(outcome, dir / "run", "only 12 faces");
+  const nlohmann::json report = ReadJson(dir / "run/report.json");
+  EXPECT_EQ(report["result"]["planes"], 6);
+  EXPECT_EQ(report["result"]["faces"], 12);
 }
 
 // Frames too far apart to share texels: one view has no residual.

@@ -62,6 +62,23 @@ TEST(CliConventions, InversePoses) {
   ExpectNotSilent(Reconstruct(dir / "run", {"--sequence=" + scan.path()}));
 }
 
+// Breaks if the user learns of a wrong convention when the long solve is done,
+// or if a good scan is suspected.
+TEST(CliConventions, ToldBeforeTheSolve) {
+  const ScanCopy scan;
+  InvertPoses(scan);
+  const TempDir dir;
+  const std::vector<std::string> flags = {"--sequence=" + scan.path(),
+                                          "--to_stage=keyframes"};
+  const Outcome outcome = Reconstruct(dir / "run", flags);
+  ExpectSuccess(outcome);
+  ExpectWarning(outcome, dir / "run", "world-to-camera");
+  ExpectWarning(outcome, dir / "run", "facet-check-input");
+  const std::string of_good_scan =
+      ReadJson(Fixture("run/report.json"))["warnings"].dump();
+  EXPECT_EQ(of_good_scan.find("facet-check-input"), std::string::npos);
+}
+
 // Raw units of 1 mm read as 0.2 mm, 4 mm and whole metres.
 TEST(CliConventions, WrongDepthUnit) {
   for (const char* shift : {"5000", "256", "1"}) {

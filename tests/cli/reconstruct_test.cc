@@ -226,12 +226,30 @@ TEST(CliReconstruct, OverwriteLeavesNothingStale) {
   ExpectSameModel(dir / "run", Fixture("run"));
 }
 
+// The model of pipeline/preflight.h is right within a factor of a few even
+// where constants dominate.
+TEST(CliReconstruct, MemoryEstimateIsHonest) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the sanitizer takes memory of its own";
+#endif
+  const json report = ReadJson(Fixture("run/report.json"));
+  double peak = 0;
+  for (const json& stage : report["stages"]) {
+    peak = std::max(peak, stage["peak_rss_mb"].get<double>());
+  }
+  const double estimate = report["memory"]["estimate_mb"];
+  EXPECT_GT(estimate, 0.3 * peak);
+  EXPECT_LT(estimate, 5 * peak);
+  EXPECT_GT(report["memory"]["available_mb"], 0);
+}
+
 // Stages announce themselves on stdout while they run, one line each.
 TEST(CliReconstruct, SaysWhatItDoes) {
   const TempDir dir;
   const Outcome outcome = Reconstruct(dir / "run");
   ExpectSuccess(outcome);
-  for (const char* stage : {"partition ",
+  for (const char* stage : {"plan ",
+                            "partition ",
                             "simplify ",
                             "keyframes ",
                             "photometric ",

@@ -111,6 +111,15 @@ TEST(CleanMesh, DropsSmallPieces) {
   EXPECT_EQ(mesh.NumVertices(), 25u);
 }
 
+// A mesh of a few faces is no speck.
+TEST(CleanMesh, SmallMeshStays) {
+  TriMesh mesh;
+  AddGrid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2, 2, &mesh);
+  AddGrid({9, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1, 1, &mesh);
+  EXPECT_EQ(CleanMesh(CleanOptions(), &mesh).small_component_faces, 2u);
+  EXPECT_EQ(mesh.NumFaces(), 8u);
+}
+
 TEST(CleanMesh, NothingLeftIsAnInputError) {
   TriMesh mesh;
   mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};

@@ -64,9 +64,11 @@ TEST(MeshChecks, FindsEachDefect) {
 // Breaks if orientation against the plane of the cluster is lost.
 TEST(MeshChecks, CountsFlippedFaces) {
   LabelledMesh cube = MakeCube(2);
-  EXPECT_EQ(CountFlippedFaces(cube.mesh, cube.partition), 0);
+  EXPECT_EQ(FindFlippedFaces(cube.mesh, cube.partition).count, 0);
   std::swap(cube.mesh.faces[3][0], cube.mesh.faces[3][1]);
-  EXPECT_EQ(CountFlippedFaces(cube.mesh, cube.partition), 1);
+  const FlippedFaces flipped = FindFlippedFaces(cube.mesh, cube.partition);
+  EXPECT_EQ(flipped.count, 1);
+  EXPECT_NEAR(flipped.area_share, 1.0 / cube.mesh.NumFaces(), 1e-12);
 }
 
 }  // namespace

@@ -167,8 +167,23 @@ TEST(Partition, MorePiecesThanTarget) {
   const size_t warnings = Warnings().size();
   EXPECT_EQ(PartitionMesh(mesh, Target(2)).clusters.size(), 3u);
   EXPECT_EQ(Warnings().size(), warnings + 1);
-  EXPECT_THROW(PartitionMesh(mesh, Target(96)), OptionsError);
   EXPECT_THROW(PartitionMesh(mesh, Target(0)), OptionsError);
+}
+
+// Breaks if a small mesh is refused, or falls into empty clusters.
+TEST(Partition, FewerFacesThanClusters) {
+  TriMesh mesh;
+  AddGrid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2, 2, &mesh);
+  for (const int target : {8, 9, 2000}) {
+    const size_t warnings = Warnings().size();
+    const PlanarPartition partition = PartitionMesh(mesh, Target(target));
+    ASSERT_EQ(partition.clusters.size(), mesh.NumFaces());
+    for (size_t f = 0; f < mesh.NumFaces(); ++f) {
+      EXPECT_EQ(partition.face_cluster[f], static_cast<int>(f));
+      EXPECT_EQ(partition.clusters[f].num_faces, 1);
+    }
+    EXPECT_EQ(Warnings().size() - warnings, target > 8 ? 1u : 0u);
+  }
 }
 
 // Three sheets in one edge: all faces there are neighbours, nothing breaks.

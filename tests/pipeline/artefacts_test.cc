@@ -89,6 +89,7 @@ MeshArtefact SomeMeshArtefact() {
   }
   for (int f = 0; f < 38; ++f) artefact.partition.face_cluster.push_back(f % 3);
   artefact.report = {{"faces", 38}, {"rms", 0.1}};
+  artefact.warnings = {"opened 3 edges", "dropped \"2\" faces"};
   return artefact;
 }
 
@@ -133,6 +134,7 @@ TEST_F(ArtefactTest, MeshComesBackBitForBit) {
       ExpectSame(in.refitted_planes[j], out.refitted_planes[j]);
     }
     EXPECT_EQ(in.report, out.report);
+    EXPECT_EQ(in.warnings, out.warnings);
   }
 }
 
@@ -238,13 +240,12 @@ TEST_F(ArtefactTest, OtherSettingsAreRefusedByName) {
   const ReconstructOptions good = options_;
   options_.merge.max_normal_deg = 12.5;
   EXPECT_THAT(ErrorOfLoading(Stage::kSimplify),
-              HasSubstr("partition.max_normal_deg = 8.0, now it is 12.5"));
+              HasSubstr("--merge_max_normal_deg = 8.0, now it is 12.5"));
   EXPECT_THAT(ErrorOfLoading(Stage::kSimplify),
               HasSubstr("--from_stage=partition"));
   options_ = good;
   options_.simplify.target_faces = 77;
-  EXPECT_THAT(ErrorOfLoading(Stage::kSimplify),
-              HasSubstr("simplify.target_faces"));
+  EXPECT_THAT(ErrorOfLoading(Stage::kSimplify), HasSubstr("--simplify_faces"));
   EXPECT_THAT(ErrorOfLoading(Stage::kSimplify),
               HasSubstr("--from_stage=simplify"));
   options_ = good;
@@ -255,6 +256,19 @@ TEST_F(ArtefactTest, OtherSettingsAreRefusedByName) {
   options_.geometry.lambda3 = 9;
   options_.bake.robust_luma = 0.5;
   EXPECT_EQ(ErrorOfLoading(Stage::kSimplify), "");
+}
+
+// With the flags of both runs at hand, their values are shown as the user gives
+// them, not as numbers of an enumeration.
+TEST_F(ArtefactTest, RefusalQuotesTheFlags) {
+  options_.flags_text = "--mesh=a.ply\n--simplify_stop=budget\n--threads=1\n";
+  Save(options_, Stage::kSimplify, SomeMeshArtefact());
+  options_.simplify.stop = SimplifyStop::kCounts;
+  options_.flags_text = "--simplify_stop=counts\n";
+  EXPECT_THAT(
+      ErrorOfLoading(Stage::kSimplify),
+      HasSubstr(
+          "with --simplify_stop=budget, now it is --simplify_stop=counts"));
 }
 
 }  // namespace

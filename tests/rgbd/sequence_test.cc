@@ -132,6 +132,12 @@ TEST(Sequence, DepthIsMetresAndMissingIsZero) {
     EXPECT_FLOAT_EQ(depth.at<float>(3, i), expected[i]);
   }
   EXPECT_FLOAT_EQ(depth.at<float>(10, 10), 2.0f);
+
+  const cv::Mat any = Open(files)->LoadDepthOfAnyRange(1);
+  const float expected_any[] = {0, 0, 0.299f, 0.3f, 6.0f, 6.001f};
+  for (int i = 0; i < 6; ++i) {
+    EXPECT_FLOAT_EQ(any.at<float>(3, i), expected_any[i]);
+  }
 }
 
 // Breaks if the big-endian samples of a 16-bit PGM are taken as they lie.

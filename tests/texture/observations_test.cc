@@ -58,7 +58,6 @@ class Scene {
   Observations Compute(const VisibilityOptions& options) {
     return ComputeObservations(texels,
                                scene.Planes(),
-                               scene.mesh,
                                RayScene(scene.mesh),
                                sequence,
                                sequence.AllFrames(),

@@ -1,0 +1,112 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+#include "pipeline/preflight.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "eval/input_check.h"
+#include "util/warnings.h"
+
+namespace facet {
+namespace {
+
+constexpr double kMb = 1024.0 * 1024.0;
+constexpr double kBaseMb = 60;  // code, libraries, buffers
+constexpr double kBytesPerFace = 330, kBytesPerKeptFace = 70;
+constexpr double kBytesPerPixel = 7, kBytesPerSmoothPixel = 4;
+constexpr double kBytesPerSampledTexel = 100, kBytesPerObservation = 11;
+constexpr double kBytesPerAtlasTexel = 220;
+constexpr double kSeenShare = 0.15;  // of the keyframes see a texel
+
+}  // namespace
+
+SceneSize MeasureScene(const ReconstructOptions& options,
+                       const TriMesh& dense,
+                       const RgbdSequence& sequence) {
+  SceneSize size;
+  size.faces = dense.NumFaces();
+  for (size_t f = 0; f < dense.NumFaces(); ++f) {
+    size.area_m2 += dense.FaceArea(f);
+  }
+  size_t usable = 0;
+  for (const Frame& frame : sequence.frames()) {
+    usable +=
+        frame.usable && !IsHeldOut(frame.number, options.keyframes) ? 1 : 0;
+  }
+  const size_t window = std::max(options.keyframes.window, 1);
+  size.keyframes = (usable + window - 1) / window;
+  const Pinhole& camera = sequence.calibration().color;
+  size.image_pixels = static_cast<size_t>(camera.width) * camera.height;
+  return size;
+}
+
+double MemoryEstimate::PeakMb() const {
+  return std::max({mesh_mb, photometric_mb, export_mb});
+}
+
+MemoryEstimate EstimateMemory(const ReconstructOptions& options,
+                              const SceneSize& size) {
+  const PhotometricOptions& p = options.photometric;
+  const double pixel_bytes =
+      kBytesPerPixel + (p.smoothing_sigma_px > 0 ? kBytesPerSmoothPixel : 0);
+  const double kept =
+      kBaseMb + (kBytesPerKeptFace * size.faces +
+                 pixel_bytes * size.keyframes * size.image_pixels) /
+                    kMb;
+  const double texel = options.atlas.texel_size_m;
+  const double texels = size.area_m2 / (texel * texel);
+  const double views = std::max(1.0, kSeenShare * size.keyframes);
+  double sampled = texels / std::max(1, p.stride * p.stride);
+  if (p.stride == 0) {
+    sampled = std::min(sampled, p.max_observations / views);
+  }
+  MemoryEstimate estimate;
+  estimate.mesh_mb = kBaseMb + kBytesPerFace * size.faces / kMb;
+  estimate.photometric_mb =
+      kept +
+      sampled * (kBytesPerSampledTexel + kBytesPerObservation * views) / kMb;
+  estimate.export_mb = kept + kBytesPerAtlasTexel * texels / kMb;
+  return estimate;
+}
+
+std::string DescribePlan(const SceneSize& size,
+                         const MemoryEstimate& estimate,
+                         double available_mb) {
+  char text[400];
+  if (available_mb > 0 && estimate.PeakMb() > available_mb) {
+    std::snprintf(text,
+                  sizeof(text),
+                  "about %.0f MB of memory are needed (mesh %.0f, optimisation "
+                  "%.0f, export %.0f) but only %.0f MB are available: use a "
+                  "coarser mesh, a larger --keyframe_window or --texel_size, "
+                  "or a smaller --max_observations",
+                  estimate.PeakMb(),
+                  estimate.mesh_mb,
+                  estimate.photometric_mb,
+                  estimate.export_mb,
+                  available_mb);
+    AddWarning(text);
+  }
+  std::snprintf(text,
+                sizeof(text),
+                "%zu faces, %.1f m2, up to %zu keyframes: about %.0f MB",
+                size.faces,
+                size.area_m2,
+                size.keyframes,
+                estimate.PeakMb());
+  return text;
+}
+
+void WarnOfConventions(const RgbdSequence& sequence,
+                       const TriMesh& mesh,
+                       const VisibilityOptions& visibility) {
+  if (!visibility.test_sensor_depth || visibility.allow_missing_depth) return;
+  const InputCheck check = CheckInput(sequence, mesh, InputCheckOptions());
+  if (check.given_fits) return;
+  AddWarning(check.verdict +
+             " The model will be poor: facet-check-input tells more.");
+}
+
+}  // namespace facet

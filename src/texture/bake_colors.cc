@@ -1,0 +1,100 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+#include "texture/bake_colors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "rgbd/blur.h"
+#include "util/parallel_for.h"
+
+namespace facet {
+namespace {
+
+using Eigen::Vector3f;
+
+float Luma(const Vector3f& rgb) {
+  return (0.299f * rgb.x() + 0.587f * rgb.y() + 0.114f * rgb.z()) / 255.0f;
+}
+
+}  // namespace
+
+std::vector<float> Sharpness(const KeyframeImages& images, double power) {
+  std::vector<float> sharpness(images.size(), 1.0f);
+  if (!(power > 0) || images.size() == 0) return sharpness;
+  ParallelFor(0, images.size(), [&](size_t k) {
+    const cv::Mat& luma = images.luma[k];
+    const ImageView<float> view = {luma.ptr<float>(),
+                                   luma.cols,
+                                   luma.rows,
+                                   static_cast<ptrdiff_t>(luma.step1())};
+    sharpness[k] = static_cast<float>(1 - CreteBlur(view));
+  });
+  std::vector<float> sorted = sharpness;
+  std::sort(sorted.begin(), sorted.end());
+  const float median = sorted[sorted.size() / 2];
+  for (float& s : sharpness) {
+    s = median > 0 ? std::max(s / median, 1e-3f) : 1.0f;
+  }
+  return sharpness;
+}
+
+std::vector<ColorSample> WeightedMean(const std::vector<ColorSample>& samples,
+                                      size_t n,
+                                      size_t num_views,
+                                      float power) {
+  std::vector<ColorSample> sum(n);
+  for (size_t v = 0; v < num_views; ++v) {
+    for (size_t i = 0; i < n; ++i) {
+      const ColorSample& sample = samples[n * v + i];
+      if (!(sample.weight > 0)) continue;
+      const float w = power == 1 ? sample.weight
+                                 : std::exp2(power * std::log2(sample.weight));
+      sum[i].rgb += w * sample.rgb;
+      sum[i].weight += w;
+    }
+  }
+  for (ColorSample& s : sum) {
+    if (s.weight > 0) s.rgb /= s.weight;
+  }
+  return sum;
+}
+
+size_t DropOutliers(size_t n,
+                    size_t owned,
+                    size_t num_views,
+                    float limit,
+                    std::vector<ColorSample>* samples) {
+  size_t dropped = 0;
+  std::vector<std::pair<float, float>> lumas;  // luma, weight
+  for (size_t i = 0; i < n; ++i) {
+    lumas.clear();
+    float total = 0;
+    for (size_t v = 0; v < num_views; ++v) {
+      const ColorSample& sample = (*samples)[n * v + i];
+      if (!(sample.weight > 0)) continue;
+      lumas.emplace_back(Luma(sample.rgb), sample.weight);
+      total += sample.weight;
+    }
+    if (lumas.size() < 2) continue;
+    std::sort(lumas.begin(), lumas.end());
+    float sum = 0, median = lumas.back().first;
+    for (const auto& [luma, weight] : lumas) {
+      sum += weight;
+      if (2 * sum < total) continue;
+      median = luma;
+      break;
+    }
+    for (size_t v = 0; v < num_views; ++v) {
+      ColorSample& sample = (*samples)[n * v + i];
+      if (!(sample.weight > 0)) continue;
+      if (std::abs(Luma(sample.rgb) - median) <= limit) continue;
+      sample.weight = 0;
+      dropped += i < owned;
+    }
+  }
+  return dropped;
+}
+
+}  // namespace facet
