@@ -411,7 +411,6 @@ std::string ProfileFlags(const std::string& name) {
          "--smoothing=0\n"
          "--depth_weight=0\n"
          "--edge_margin=0\n"
-         "--test_mesh_edges=false\n"
          "--gauge=none\n"
          "--plane=raw4\n"
          "--lambda2=0.1\n"

@@ -30,10 +30,9 @@ class DepthMomentCost {
                   double weight)
       : anchor_(anchor) {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(moment);
-    factor_ = (weight * eigen.eigenvalues().cwiseMax(0.0))
-                  .cwiseSqrt()
-                  .asDiagonal() *
-              eigen.eigenvectors().transpose();
+    factor_ =
+        (weight * eigen.eigenvalues().cwiseMax(0.0)).cwiseSqrt().asDiagonal() *
+        eigen.eigenvectors().transpose();
   }
 
   template <typename T>

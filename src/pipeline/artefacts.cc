@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/artefacts.h"
 
+#include <charconv>
 #include <filesystem>
 #include <sstream>
 
@@ -24,13 +25,34 @@ json SettingsUpTo(const ReconstructOptions& options, Stage stage) {
   return settings;
 }
 
+// Numbers as a user would type them: gflags prints 0.03 with 17 digits.
+std::string ShortNumber(const std::string& text) {
+  double value = 0;
+  const char* end = text.data() + text.size();
+  const auto read = std::from_chars(text.data(), end, value);
+  if (read.ec != std::errc() || read.ptr != end) return text;
+  char out[32];
+  return std::string(out, std::to_chars(out, out + sizeof(out), value).ptr);
+}
+
+// Artefacts do not depend on where they are written.
+std::string WithoutOutput(const std::string& flags_text) {
+  std::string kept;
+  std::istringstream lines(flags_text);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.rfind("--output=", 0) != 0) kept += line + "\n";
+  }
+  return kept;
+}
+
 // "--name=value" of the flag in the lines of a flags.txt, "" if it is not
 // there.
 std::string FlagLine(const std::string& flags_text, const std::string& name) {
   const std::string begin = "--" + name + "=";
   std::istringstream lines(flags_text);
   for (std::string line; std::getline(lines, line);) {
-    if (line.compare(0, begin.size(), begin) == 0) return line;
+    if (line.compare(0, begin.size(), begin) != 0) continue;
+    return begin + ShortNumber(line.substr(begin.size()));
   }
   return "";
 }
@@ -81,7 +103,7 @@ void Write(const ReconstructOptions& options,
            const StageRecord& record,
            ArchiveWriter* writer) {
   writer->meta["settings"] = SettingsUpTo(options, stage);
-  writer->meta["flags"] = options.flags_text;
+  writer->meta["flags"] = WithoutOutput(options.flags_text);
   writer->meta["report"] = record.report;
   writer->meta["warnings"] = record.warnings;
   writer->Write(ArtefactPath(options, stage));

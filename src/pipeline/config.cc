@@ -164,6 +164,8 @@ std::string FlagOfSetting(const std::string& setting) {
       {"window", "keyframe_window"},
       {"texel_size_m", "texel_size"},
       {"stride", "texel_stride"},
+      {"edge_margin_m", "edge_margin"},
+      {"occlusion_tolerance_m", "occlusion_tolerance"},
       {"smoothing_sigma_px", "smoothing"},
       {"stop_relative_decrease", "stop_decrease"},
       {"max_plane_iterations", "plane_iterations"},

@@ -43,21 +43,23 @@ std::vector<Sample> SamplesOfFrame(const PlanarPartition& partition,
       const double sigma = DepthSigma(z);
       const double tolerance =
           std::max(options.min_tolerance_m, 3 * sigma + 0.02);
-      const RayHit hit = scene.Intersect(world_from_depth.translation,
-                                         direction, 0, z + 4 * tolerance);
+      const RayHit hit = scene.Intersect(
+          world_from_depth.translation, direction, 0, z + 4 * tolerance);
       if (hit.face < 0) continue;
       const int cluster = partition.face_cluster[hit.face];
       const Plane& plane = planes[cluster];
       if (-plane.normal.dot(direction) < min_cos * direction.norm()) continue;
       if (std::abs(plane.SignedDistance(x)) > tolerance) continue;
       const double rms = partition.clusters[cluster].rms;
-      samples.push_back({cluster, step * step / (sigma * sigma + rms * rms),
+      samples.push_back({cluster,
+                         step * step / (sigma * sigma + rms * rms),
                          calibration.color_from_depth * (z * ray)});
     }
   }
   std::stable_sort(
-      samples.begin(), samples.end(),
-      [](const Sample& a, const Sample& b) { return a.plane < b.plane; });
+      samples.begin(), samples.end(), [](const Sample& a, const Sample& b) {
+        return a.plane < b.plane;
+      });
   return samples;
 }
 
@@ -76,9 +78,14 @@ std::vector<DepthMoment> ComputeDepthMoments(
   }
   std::vector<std::vector<DepthMoment>> of_frame(keyframes.size());
   ParallelFor(0, keyframes.size(), [&](size_t k) {
-    const std::vector<Sample> samples = SamplesOfFrame(
-        partition, planes, scene, sequence.calibration(),
-        sequence.LoadDepth(keyframes[k]), color_cam_from_world[k], options);
+    const std::vector<Sample> samples =
+        SamplesOfFrame(partition,
+                       planes,
+                       scene,
+                       sequence.calibration(),
+                       sequence.LoadDepth(keyframes[k]),
+                       color_cam_from_world[k],
+                       options);
     for (size_t begin = 0, end = 0; begin < samples.size(); begin = end) {
       DepthMoment moment;
       moment.keyframe = static_cast<int>(k);

@@ -40,7 +40,7 @@ struct VisibilityOptions {
   double depth_edge_jump_m = 0.05;  // jump > max(this, rel * z)
   double depth_edge_jump_rel = 0.03;
   int depth_edge_dilate_px = 3;
-  bool test_mesh_edges = true;  // away from where a surface of the mesh ends
+  bool test_mesh_edges = false;  // away from where a surface of the mesh ends
   double mesh_edge_jump_m = 0.008;  // jump > max(this, rel * z)
   double mesh_edge_jump_rel = 0.004;
   int mesh_edge_dilate_px = 3;

@@ -230,8 +230,8 @@ cv::Mat TwoPlanes(double a1, double b1, double a2, double b2) {
   for (int y = 0; y < depth.rows; ++y) {
     for (int x = 0; x < depth.cols; ++x) {
       const double d = x - 29.5;
-      depth.at<float>(y, x) = static_cast<float>(
-          1 / (d < 0 ? a1 + b1 * d : a2 + b2 * d));
+      depth.at<float>(y, x) =
+          static_cast<float>(1 / (d < 0 ? a1 + b1 * d : a2 + b2 * d));
     }
   }
   return depth;

@@ -116,7 +116,7 @@ TEST(Observations, MeshEdgesKeepAwayFromSilhouettes) {
   const Pinhole& camera = s.sequence.calibration().color;
   size_t near_rim = 0;
   for (int k = 0; k < 3; ++k) {
-    const Pose& pose = s.sequence.AllPoses()[k];
+    const Pose pose = s.sequence.AllPoses()[k];
     const Eigen::Vector2d low =
         camera.Project<double>(pose * Vector3d(-0.1, -0.1, 1.2));
     const Eigen::Vector2d high =
@@ -304,7 +304,7 @@ TEST(DepthMoments, VanishOnTheTruePlanesOfTheRightCamera) {
       s.sequence.AllFrames(), s.sequence.AllPoses(), options);
   ASSERT_EQ(moments.size(), 6u);  // both planes in all three frames
   for (const DepthMoment& d : moments) {
-    const Pose& pose = s.sequence.AllPoses()[d.keyframe];
+    const Pose pose = s.sequence.AllPoses()[d.keyframe];
     const Plane& plane = s.scene.partition.clusters[d.plane].plane;
     Eigen::Vector4d psi;
     psi.head<3>() = pose.rotation * plane.normal;
