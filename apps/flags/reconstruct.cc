@@ -11,6 +11,7 @@
 #include "apps/flags/limits.h"
 #include "apps/flags/sequence.h"
 #include "apps/init_app.h"
+#include "problems/formulation.h"
 #include "util/errors.h"
 
 using facet::AtlasOptions;
@@ -174,12 +175,7 @@ DEFINE_int32(warp_rows,
 DEFINE_double(lambda2,
               EnergyWeights().lambda2,
               "weight of the warp's size E_s (paper: 0.1)");
-DEFINE_string(
-    gauge,
-    "mean",
-    "what holds the model in place: mean (the cameras' common motion "
-    "is taken out, and a weak prior on every pose), prior (only that) "
-    "or none (the paper)");
+DEFINE_string(gauge, facet::AxisDefault("gauge"), facet::AxisHelp("gauge"));
 DEFINE_double(gauge_sigma_mm, 10, "prior: standard deviation of a camera [mm]");
 DEFINE_double(gauge_sigma_deg, 0.3, "prior: standard deviation of a rotation");
 DEFINE_double(
@@ -187,10 +183,10 @@ DEFINE_double(
     EnergyWeights().prior_strength,
     "prior: its energy when all cameras are one sigma away, as a share "
     "of the initial E_c");
-DEFINE_string(plane,
-              "anchored",
-              "plane parameters: anchored (S2 x R about the centroid) or raw4 "
-              "(four free numbers, normalised afterwards; the paper)");
+DEFINE_string(plane, facet::AxisDefault("plane"), facet::AxisHelp("plane"));
+DEFINE_string(manifold,
+              facet::AxisDefault("manifold"),
+              facet::AxisHelp("manifold"));
 DEFINE_int32(pose_iterations,
              SolverConfig().max_pose_iterations,
              "iterations of a pose or warp solve");
@@ -348,17 +344,18 @@ void SolverOptions(ReconstructOptions* o) {
   p.warp_columns = FLAGS_warp_columns;
   p.warp_rows = FLAGS_warp_rows;
   p.weights.lambda2 = FLAGS_lambda2;
-  const int gauge = Choose("gauge", FLAGS_gauge);
-  p.weights.pose_prior = gauge <= 1;
-  p.solver.remove_common_motion = gauge == 0;
+  const auto gauge = static_cast<Gauge>(Choose("gauge", FLAGS_gauge));
+  p.solver.remove_common_motion = gauge == Gauge::kMean;
+  p.weights.pose_prior = gauge == Gauge::kMean || gauge == Gauge::kPrior;
+  p.solver.fix_first_pose = gauge == Gauge::kFirst;
   p.weights.prior_strength = FLAGS_gauge_strength;
   p.weights.depth_weight = FLAGS_depth_weight;
   p.weights.prior.translation_m = 1e-3 * FLAGS_gauge_sigma_mm;
   p.weights.prior.rotation_rad =
       FLAGS_gauge_sigma_deg * 3.14159265358979323846 / 180;
-  p.solver.plane_step = Choose("plane", FLAGS_plane) == 0
-                            ? PlaneStep::kAnchored
-                            : PlaneStep::kRaw4;
+  Formulation& f = p.formulation;
+  f.plane = static_cast<PlaneKind>(Choose("plane", FLAGS_plane));
+  f.manifold = static_cast<PoseKind>(Choose("manifold", FLAGS_manifold));
   p.solver.max_pose_iterations = FLAGS_pose_iterations;
   p.solver.max_plane_iterations = FLAGS_plane_iterations;
   p.solver.max_joint_iterations = FLAGS_joint_iterations;

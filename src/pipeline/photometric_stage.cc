@@ -145,6 +145,7 @@ PhotometricResult RunPhotometricStage(
   result.visibility = sampled.counts;
 
   TextureProblem problem;
+  problem.formulation = options.formulation;
   problem.camera = sequence.calibration().color;
   problem.lattice = {options.warp_columns, options.warp_rows,
                      problem.camera.width, problem.camera.height};

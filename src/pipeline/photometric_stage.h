@@ -35,6 +35,7 @@ struct PhotometricOptions {
   // measured best on real scans. The paper: 10x[C; Phi; T+F].
   std::string schedule = "4x[Phi; C+T]; 5x[C; Phi; F]";
   StopRule stop;
+  Formulation formulation;
   SolverConfig solver;
   EnergyWeights weights;  // lambda1 and texel_weight are computed
 };

@@ -39,7 +39,9 @@ class Run {
 
   json Execute() {
     CheckFolder();
-    CheckSchedule(ParseSchedule(options_.photometric.schedule));
+    const Schedule schedule = ParseSchedule(options_.photometric.schedule);
+    CheckSchedule(schedule);
+    CheckFormulation(options_.photometric.formulation, PhasesOf(schedule));
     sequence_ = OpenSequence(options_.sequence_path, options_.sequence);
     report_["stages"] = json::array();
     RunPartition();

@@ -251,7 +251,8 @@ void AddBlocks(const TextureProblem& problem,
     }
     ceres_problem->AddResidualBlock(
         new PoseRowsCost(evaluation, k, num_keyframes), nullptr, parameters);
-    ceres_problem->SetManifold(pose(k), new LeftSe3Manifold);
+    ceres_problem->SetManifold(
+        pose(k), CreatePoseManifold(problem.formulation.manifold));
     if (weights.pose_prior) {
       ceres_problem->AddResidualBlock(
           PosePriorCost::Create(problem.initial_cam_from_world[k],
@@ -260,7 +261,9 @@ void AddBlocks(const TextureProblem& problem,
           pose(k));
     }
   }
-  ceres_problem->AddResidualBlock(new RestCost(evaluation), nullptr, pose(0));
+  // On a pose that moves: Ceres evaluates residuals of constant blocks once.
+  ceres_problem->AddResidualBlock(
+      new RestCost(evaluation), nullptr, pose(num_keyframes - 1));
   if (hold_common_motion) {
     std::vector<double*> parameters;
     for (int k = 0; k < num_keyframes; ++k) parameters.push_back(pose(k));
@@ -281,7 +284,9 @@ void AddBlocks(const TextureProblem& problem,
         new PlaneRowsCost(evaluation, j, static_cast<int>(keyframes.size())),
         nullptr,
         parameters);
-    ceres_problem->SetManifold(plane, new AnchoredPlaneManifold);
+    ceres_problem->SetManifold(
+        plane,
+        CreatePlaneManifold(problem.formulation.plane, problem.anchors[j]));
   }
   if (weights.depth_weight == 0) return;
   for (const DepthMoment& d : problem.depth_moments) {
@@ -319,6 +324,9 @@ void SolveJoint(const TextureProblem& problem,
             config.remove_common_motion,
             state,
             &ceres_problem);
+  if (config.fix_first_pose) {
+    ceres_problem.SetParameterBlockConstant(state->poses.data());
+  }
 
   ceres::Solver::Options options;
   // R is dense in the poses; planes first costs no fill. (CGNR stops far too

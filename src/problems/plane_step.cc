@@ -135,10 +135,10 @@ void SolvePlanes(const TextureProblem& problem,
     auto* moment = new PlaneMomentCost(moments[j], 1);
     const double cost_before = PlaneCost({photometric, moment}, plane);
     ceres::Problem ceres_problem;
-    ceres_problem.AddParameterBlock(plane, kPlaneSize);
-    if (config.plane_step == PlaneStep::kAnchored) {
-      ceres_problem.SetManifold(plane, new AnchoredPlaneManifold);
-    }
+    ceres_problem.AddParameterBlock(
+        plane,
+        kPlaneSize,
+        CreatePlaneManifold(problem.formulation.plane, problem.anchors[j]));
     ceres_problem.AddResidualBlock(photometric, nullptr, plane);
     ceres_problem.AddResidualBlock(moment, nullptr, plane);
     ceres::Solver::Summary solved;

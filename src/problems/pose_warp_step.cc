@@ -98,7 +98,7 @@ class FrameProblem {
     with_warp_ = (blocks & kWarps) != 0 || frame.warp != nullptr;
     bins_ = BinByCell(problem, points, state->CamFromWorld(keyframe), keyframe,
                       !with_warp_);
-    ceres_.AddParameterBlock(pose_, kPoseSize, new LeftSe3Manifold);
+    ceres_.AddParameterBlock(pose_, kPoseSize, CreatePoseManifold(problem.formulation.manifold));
     AddCells(frame, points, weights);
     if (with_warp_) AddWarpTerm(weights);
     if (weights.pose_prior) {
@@ -302,7 +302,10 @@ void SolvePosesAndWarps(const TextureProblem& problem,
     const size_t n =
         problem.observations.begin[k + 1] - problem.observations.begin[k];
     if (n < config.min_frame_observations) return;
-    results[k] = SolveFrame(problem, weights, blocks, config, frames[k], points,
+    const unsigned free =
+        config.fix_first_pose && k == 0 ? blocks & ~unsigned{kPoses} : blocks;
+    if (free == 0) return;
+    results[k] = SolveFrame(problem, weights, free, config, frames[k], points,
                             static_cast<int>(k), &memory->frame_radius[k],
                             state);
   });

@@ -30,19 +30,13 @@ enum BlockSet : unsigned {
 // "C", "Phi", "T+F", ...
 std::string BlockSetName(unsigned blocks);
 
-// How a plane is parametrised in the plane step.
-enum class PlaneStep {
-  kAnchored,  // S^2 x R about the centroid (default)
-  kRaw4,      // four free numbers, normalised afterwards (the paper)
-};
-
 struct SolverConfig {
   // After every phase that moves poses, take their common motion since the
   // start out again and average the colours anew (problems/gauge.h).
   bool remove_common_motion = true;
+  bool fix_first_pose = false;  // keyframe 0 does not move
   int max_plane_iterations = 3;
   int max_pose_iterations = 5;
-  PlaneStep plane_step = PlaneStep::kAnchored;
   // Joint solve: kappa and eta of problems/joint_pass.h, and the largest
   // trust-region radius, which with the pose prior holds soft gauge directions.
   int max_joint_iterations = 5;

@@ -16,6 +16,7 @@
 #include "geometry/plane.h"
 #include "geometry/pose.h"
 #include "geometry/warp_grid.h"
+#include "problems/formulation.h"
 #include "texture/depth_moments.h"
 #include "texture/observations.h"
 #include "texture/texels.h"
@@ -54,6 +55,7 @@ struct TileSegment {
 
 // Everything that stays constant while poses, planes, warps and colours move.
 struct TextureProblem {
+  Formulation formulation;
   Pinhole camera;        // of the colour images
   WarpLattice lattice;
   std::vector<ImageView<float>> images;      // luma, pre-smoothed: E_c

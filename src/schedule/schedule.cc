@@ -132,6 +132,14 @@ void CheckSchedule(const Schedule& schedule) {
   }
 }
 
+std::vector<unsigned> PhasesOf(const Schedule& schedule) {
+  std::vector<unsigned> phases;
+  for (const ScheduleGroup& group : schedule) {
+    phases.insert(phases.end(), group.phases.begin(), group.phases.end());
+  }
+  return phases;
+}
+
 std::string ToString(const Schedule& schedule) {
   std::string text;
   for (const ScheduleGroup& group : schedule) {

@@ -30,6 +30,9 @@ Schedule ParseSchedule(const std::string& text);
 // together (problems/solve_blocks.h), so that a run fails at its start.
 void CheckSchedule(const Schedule& schedule);
 
+// The sets of blocks that its phases free, in order.
+std::vector<unsigned> PhasesOf(const Schedule& schedule);
+
 // Canonical text; ParseSchedule(ToString(s)) gives s back.
 std::string ToString(const Schedule& schedule);
 

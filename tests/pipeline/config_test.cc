@@ -90,7 +90,15 @@ TEST(StageSettings, EveryOptionBelongsToOneStage) {
       {Stage::kPhotometric,
        [](auto* o) { o->photometric.solver.max_joint_iterations = 77; }},
       {Stage::kPhotometric,
-       [](auto* o) { o->photometric.solver.plane_step = PlaneStep::kRaw4; }},
+       [](auto* o) {
+         o->photometric.formulation.plane = PlaneKind::kRaw4;
+       }},
+      {Stage::kPhotometric,
+       [](auto* o) {
+         o->photometric.formulation.manifold = PoseKind::kRight;
+       }},
+      {Stage::kPhotometric,
+       [](auto* o) { o->photometric.solver.fix_first_pose = true; }},
       {Stage::kPhotometric,
        [](auto* o) { o->photometric.weights.lambda2 = 7; }},
       {Stage::kPhotometric,

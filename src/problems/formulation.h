@@ -1,0 +1,57 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+//
+// The formulations of the photometric energy and its unknowns that can be
+// compared: one struct, and one table from which the programs take their help
+// texts, their choices and their lists. The first value of an axis is the
+// default. How the unknowns are solved for is the schedule's business
+// (problems/solve_blocks.h).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "costs/plane_manifold.h"
+#include "costs/se3_manifold.h"
+
+namespace facet {
+
+// What holds the model in place (problems/gauge.h, costs/pose_prior.h).
+enum class Gauge { kMean, kPrior, kFirst, kNone };
+
+// One choice on each axis but the gauge, whose parts belong to EnergyWeights
+// and SolverConfig. Constant during an optimisation.
+struct Formulation {
+  PlaneKind plane = PlaneKind::kAnchored;
+  PoseKind manifold = PoseKind::kLeft;
+};
+
+struct AxisValue {
+  const char* name;
+  const char* text;
+};
+
+// `values` are in the order of the axis' enum.
+struct FormulationAxis {
+  const char* name;  // also the flag of facet-reconstruct
+  const char* text;
+  std::vector<AxisValue> values;
+};
+
+const std::vector<FormulationAxis>& FormulationAxes();
+
+// "text: value (its text), value (...)" of the axis `name`, and the name of its
+// first value: help and default of its flag. The text lives for ever.
+const char* AxisHelp(const std::string& name);
+const char* AxisDefault(const std::string& name);
+
+// The position of `value` on the axis `name`, to be cast to its enum. Throws
+// OptionsError that lists the values.
+int AxisIndex(const std::string& name, const std::string& value);
+
+// Throws OptionsError with the reason if the formulation cannot be solved by
+// phases that free these sets of blocks (BlockSet of problems/solve_blocks.h).
+void CheckFormulation(const Formulation& formulation,
+                      const std::vector<unsigned>& phases);
+
+}  // namespace facet
