@@ -4,15 +4,22 @@
 
 #include <glog/logging.h>
 
+#include "problems/formulation.h"
 #include "util/errors.h"
 
 namespace facet {
 
-const std::vector<FlagChoices>& AllFlagChoices() {
-  static const auto* const kTable = new std::vector<FlagChoices>{
-      {"schedule", {}, true},
-      {"plane", {"anchored", "raw4"}, true},
-      {"gauge", {"mean", "prior", "none"}, true},
+namespace {
+
+std::vector<FlagChoices> MakeTable() {
+  std::vector<FlagChoices> table = {{"schedule", {}, true}};
+  for (const FormulationAxis& axis : FormulationAxes()) {
+    FlagChoices row = {axis.name, {}, true};
+    for (const AxisValue& value : axis.values) row.values.push_back(value.name);
+    table.push_back(row);
+  }
+  const std::vector<FlagChoices> others = {
+      {"loss_scale", {}, true},
       {"gauge_strength", {}, true},
       {"lambda2", {}, true},
       {"smoothing", {}, true},
@@ -28,6 +35,14 @@ const std::vector<FlagChoices>& AllFlagChoices() {
       {"geometry_freedom", {"band", "none"}},
       {"bake_sampler", {"bilinear", "bicubic"}},
   };
+  table.insert(table.end(), others.begin(), others.end());
+  return table;
+}
+
+}  // namespace
+
+const std::vector<FlagChoices>& AllFlagChoices() {
+  static const auto* const kTable = new std::vector<FlagChoices>(MakeTable());
   return *kTable;
 }
 

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: MIT
 //
 // The values of flags that name one of several ways to do a thing. One table
-// serves the parser of the flags and facet-ablate --list: to add a formulation,
-// add its name to the row of its flag (or a row) in choices.cc and a branch
-// where the flag is read.
+// serves the parser of the flags and facet-ablate --list. The axes of the
+// formulation come from problems/formulation.h: to add a value, add it to its
+// enum and to the table there; other flags have their row in choices.cc.
 #pragma once
 
 #include <string>

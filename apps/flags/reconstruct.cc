@@ -187,6 +187,24 @@ DEFINE_string(plane, facet::AxisDefault("plane"), facet::AxisHelp("plane"));
 DEFINE_string(manifold,
               facet::AxisDefault("manifold"),
               facet::AxisHelp("manifold"));
+DEFINE_string(sampling,
+              facet::AxisDefault("sampling"),
+              facet::AxisHelp("sampling"));
+DEFINE_string(loss,
+              facet::AxisDefault("loss"),
+              facet::AxisHelp("loss"));
+DEFINE_string(out_of_image,
+              facet::AxisDefault("out_of_image"),
+              facet::AxisHelp("out_of_image"));
+DEFINE_string(channels,
+              facet::AxisDefault("channels"),
+              facet::AxisHelp("channels"));
+DEFINE_string(evaluation,
+              facet::AxisDefault("evaluation"),
+              facet::AxisHelp("evaluation"));
+DEFINE_double(loss_scale,
+              255 * PhotometricOptions().formulation.loss_scale,
+              "robust losses: residuals beyond it count less [grey, 0-255]");
 DEFINE_int32(pose_iterations,
              SolverConfig().max_pose_iterations,
              "iterations of a pose or warp solve");
@@ -265,6 +283,7 @@ void CheckNumbers() {
       {"warp_columns", 2, 100},
       {"warp_rows", 2, 100},
       {"lambda2", 0, kMax, true},
+      {"loss_scale", 0, 255, true},
       {"gauge_sigma_mm", 0, kMax, true},
       {"gauge_sigma_deg", 0, kMax, true},
       {"gauge_strength", 0, kMax, true},
@@ -356,6 +375,14 @@ void SolverOptions(ReconstructOptions* o) {
   Formulation& f = p.formulation;
   f.plane = static_cast<PlaneKind>(Choose("plane", FLAGS_plane));
   f.manifold = static_cast<PoseKind>(Choose("manifold", FLAGS_manifold));
+  f.sampling = static_cast<Sampling>(Choose("sampling", FLAGS_sampling));
+  f.loss = static_cast<LossKind>(Choose("loss", FLAGS_loss));
+  f.loss_scale = FLAGS_loss_scale / 255;
+  f.out_of_image =
+      static_cast<OutOfImage>(Choose("out_of_image", FLAGS_out_of_image));
+  f.channels = static_cast<Channels>(Choose("channels", FLAGS_channels));
+  f.evaluation =
+      static_cast<Evaluation>(Choose("evaluation", FLAGS_evaluation));
   p.solver.max_pose_iterations = FLAGS_pose_iterations;
   p.solver.max_plane_iterations = FLAGS_plane_iterations;
   p.solver.max_joint_iterations = FLAGS_joint_iterations;

@@ -11,15 +11,22 @@
 
 namespace facet {
 
-inline double SampleImage(const ImageView<float>& image, double u, double v) {
-  return SampleBilinear(image, u, v).value;
+inline double SampleImage(const SampledImage& image, double u, double v) {
+  return SampleAt(image, u, v).value;
+}
+
+inline double ScalarPart(double x) { return x; }
+
+template <int N>
+double ScalarPart(const ceres::Jet<double, N>& x) {
+  return x.a;
 }
 
 template <int N>
-ceres::Jet<double, N> SampleImage(const ImageView<float>& image,
+ceres::Jet<double, N> SampleImage(const SampledImage& image,
                                   const ceres::Jet<double, N>& u,
                                   const ceres::Jet<double, N>& v) {
-  const Sample s = SampleBilinear(image, u.a, v.a);
+  const Sample s = SampleAt(image, u.a, v.a);
   return ceres::Jet<double, N>(s.value, s.dx * u.v + s.dy * v.v);
 }
 

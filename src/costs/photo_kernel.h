@@ -9,15 +9,21 @@
 // The file photo_kernel_impl.h is compiled once per instruction set and chosen
 // at run time, so that a portable build is fast everywhere; hence the interface
 // is plain floats, no Eigen type (whose layout depends on compiler flags).
-// Out-of-image policy: samples are clamped to the border (derivative 0 across
-// it) and counted, never dropped: the observation set stays frozen.
+// Samples outside the image are clamped to the border (derivative 0 across it)
+// and counted: the observation set stays frozen. With OutOfImage::kDrop they,
+// and those behind the camera, have no residual, and are counted as lost.
 // Derivatives: method, Sec. 7.2. Oracle: costs/photometric.h, in double.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 
+#include "geometry/image_view.h"
+
 namespace facet {
+
+enum class LossKind { kSquared, kHuber, kCauchy, kTukey };  // robust_loss.h
+enum class OutOfImage { kFreeze, kDrop };
 
 // A keyframe as the kernel sees it. World coordinates are relative to the
 // origin chosen by the caller: t = R * origin + t_original.
@@ -31,6 +37,12 @@ struct PhotoFrame {
   const float* warp = nullptr;   // 2 * columns * rows, or null: no warp
   int columns = 0, rows = 0;     // control vertices
   float inverse_cell_width = 0, inverse_cell_height = 0;  // [1/px]
+  Sampling sampling = Sampling::kBilinear;
+  const float* gradient_x = nullptr;  // Sampling::kScharr: of the image's stride
+  const float* gradient_y = nullptr;
+  LossKind loss = LossKind::kSquared;
+  float loss_scale = 1;  // [intensity]
+  OutOfImage out_of_image = OutOfImage::kFreeze;
 };
 
 // A texel as the kernel reads it: a point (q or p, by function) and its colour.
@@ -43,11 +55,13 @@ struct PhotoCounts {
   size_t used = 0;     // all samples
   size_t clamped = 0;  // of them outside the image, moved to its border
   size_t behind = 0;   // of them behind (or nearer than 5 cm to) the camera
+  size_t lost = 0;     // of them without residual (OutOfImage::kDrop)
 
   void operator+=(const PhotoCounts& other) {
     used += other.used;
     clamped += other.clamped;
     behind += other.behind;
+    lost += other.lost;
   }
 };
 
@@ -58,7 +72,8 @@ inline constexpr int GramSize(int n) { return (n + 1) * (n + 1); }
 struct PhotoKernel {
   const char* name;  // "baseline", "avx2", "avx512"
 
-  // intensity[k] = I(F(pi(R q + t))) for the texels ids[0..n).
+  // intensity[k] = I(F(pi(R q + t))) for the texels ids[0..n); NaN for those
+  // that are dropped.
   void (*sample)(const PhotoFrame& frame,
                  const PhotoTexel* texels,
                  const uint32_t* ids,
@@ -81,12 +96,14 @@ struct PhotoKernel {
                           float* g2,
                           PhotoCounts* counts);
 
-  // Sum r^2 over texels given as plane points q that lie in the warp cell whose
+  // Sum rho(r^2) over texels given as plane points q in the warp cell whose
   // upper left vertex is in lattice column a and row b; frame.warp has just the
   // cell's four vertices f00, f10, f01, f11 (or is null: no warp), and the
   // cell's polynomial is used whatever u is. With `gram` also the Gram matrix
   // over (omega, upsilon | f00 f10 f01 f11): 14 columns if frame.warp is given
-  // and `warp_columns`, else 6. gram is added to.
+  // and `warp_columns`, else 6. gram is added to. With a robust loss its rows
+  // are weighted with rho', but its last entry is the sum of rho: compressed
+  // (costs/compressed_block.h) it has the exact cost and gradient.
   double (*frame_cell)(const PhotoFrame& frame,
                        float a,
                        float b,
@@ -97,7 +114,7 @@ struct PhotoKernel {
                        double* gram,
                        PhotoCounts* counts);
 
-  // Sum r^2 over texels given as mesh points p of one plane (n_x, n_y, n_z, d)
+  // Sum rho(r^2) over texels given as mesh points p of one plane (n_x, n_y, n_z, d)
   // about the anchor c. With `gram` also the Gram matrix over the four ambient
   // plane parameters. gram is added to.
   double (*plane_segment)(const PhotoFrame& frame,

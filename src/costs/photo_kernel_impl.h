@@ -139,7 +139,9 @@ inline void WarpAnywhere(const PhotoFrame& f, Chunk* c) {
 }
 
 // Bilinear value and its exact gradient, clamped to the image.
-inline void SampleImage(const PhotoFrame& f, Chunk* c, PhotoCounts* counts) {
+inline void SampleBilinear(const PhotoFrame& f,
+                           Chunk* c,
+                           PhotoCounts* counts) {
   const float max_u = static_cast<float>(f.width - 1);
   const float max_v = static_cast<float>(f.height - 1);
   const float max_x = static_cast<float>(f.width - 2);
@@ -168,6 +170,133 @@ inline void SampleImage(const PhotoFrame& f, Chunk* c, PhotoCounts* counts) {
   counts->clamped += static_cast<size_t>(clamped);
 }
 
+// The Scharr gradient images, interpolated, in place of the exact gradient.
+__attribute__((noinline)) void SampleScharr(const PhotoFrame& f,
+                                            Chunk* c,
+                                            PhotoCounts* counts) {
+  SampleBilinear(f, c, counts);
+  const float max_u = static_cast<float>(f.width - 1);
+  const float max_v = static_cast<float>(f.height - 1);
+  const float max_x = static_cast<float>(f.width - 2);
+  const float max_y = static_cast<float>(f.height - 2);
+  const int stride = static_cast<int>(f.stride);
+  const float *gx = f.gradient_x, *gy = f.gradient_y;
+  for (int i = 0; i < kLanes; ++i) {
+    const float u = c->u.v[i], v = c->v.v[i];
+    const float uc = u > 0 ? (u < max_u ? u : max_u) : 0.0f;
+    const float vc = v > 0 ? (v < max_v ? v : max_v) : 0.0f;
+    const int x = static_cast<int>(uc < max_x ? uc : max_x);
+    const int y = static_cast<int>(vc < max_y ? vc : max_y);
+    const float a = uc - static_cast<float>(x), b = vc - static_cast<float>(y);
+    const int k = y * stride + x;
+    const float w00 = (1 - a) * (1 - b), w10 = a * (1 - b);
+    const float w01 = (1 - a) * b, w11 = a * b;
+    c->ix.v[i] = (u == uc ? 1.0f : 0.0f) *
+                 (w00 * gx[k] + w10 * gx[k + 1] + w01 * gx[k + stride] +
+                  w11 * gx[k + stride + 1]);
+    c->iy.v[i] = (v == vc ? 1.0f : 0.0f) *
+                 (w00 * gy[k] + w10 * gy[k + 1] + w01 * gy[k + stride] +
+                  w11 * gy[k + stride + 1]);
+  }
+}
+
+// Catmull-Rom value and gradient (geometry/image_sampler.h: SampleBicubic).
+__attribute__((noinline)) void SampleBicubic(const PhotoFrame& f,
+                                             Chunk* c,
+                                             PhotoCounts* counts) {
+  const float max_u = static_cast<float>(f.width - 1);
+  const float max_v = static_cast<float>(f.height - 1);
+  const float max_x = static_cast<float>(f.width - 2);
+  const float max_y = static_cast<float>(f.height - 2);
+  const int stride = static_cast<int>(f.stride);
+  const int last_x = f.width - 1, last_y = f.height - 1;
+  const float* image = f.image;
+  float clamped = 0;
+  for (int i = 0; i < kLanes; ++i) {
+    const float u = c->u.v[i], v = c->v.v[i];
+    const float uc = u > 0 ? (u < max_u ? u : max_u) : 0.0f;
+    const float vc = v > 0 ? (v < max_v ? v : max_v) : 0.0f;
+    const float in_u = u == uc ? 1.0f : 0.0f;
+    const float in_v = v == vc ? 1.0f : 0.0f;
+    clamped += (1 - in_u * in_v) * c->valid.v[i];
+    const int x = static_cast<int>(uc < max_x ? uc : max_x);
+    const int y = static_cast<int>(vc < max_y ? vc : max_y);
+    const float a = uc - static_cast<float>(x), b = vc - static_cast<float>(y);
+    const int x0 = x > 0 ? x - 1 : 0, x3 = x + 2 < last_x ? x + 2 : last_x;
+    const int y0 = y > 0 ? y - 1 : 0, y3 = y + 2 < last_y ? y + 2 : last_y;
+    const float w0 = a * (-0.5f + a * (1 - 0.5f * a));
+    const float w1 = 1 + a * a * (-2.5f + 1.5f * a);
+    const float w2 = a * (0.5f + a * (2 - 1.5f * a));
+    const float w3 = a * a * (-0.5f + 0.5f * a);
+    const float d0 = -0.5f + a * (2 - 1.5f * a), d1 = a * (-5 + 4.5f * a);
+    const float d2 = 0.5f + a * (4 - 4.5f * a), d3 = a * (-1 + 1.5f * a);
+    const int rows[4] = {y0 * stride, y * stride, (y + 1) * stride,
+                         y3 * stride};
+    const float v0 = b * (-0.5f + b * (1 - 0.5f * b));
+    const float v1 = 1 + b * b * (-2.5f + 1.5f * b);
+    const float v2 = b * (0.5f + b * (2 - 1.5f * b));
+    const float v3 = b * b * (-0.5f + 0.5f * b);
+    const float e0 = -0.5f + b * (2 - 1.5f * b), e1 = b * (-5 + 4.5f * b);
+    const float e2 = 0.5f + b * (4 - 4.5f * b), e3 = b * (-1 + 1.5f * b);
+    const float wv[4] = {v0, v1, v2, v3}, ev[4] = {e0, e1, e2, e3};
+    float value = 0, dx = 0, dy = 0;
+    for (int j = 0; j < 4; ++j) {
+      const float i0 = image[rows[j] + x0], i1 = image[rows[j] + x];
+      const float i2 = image[rows[j] + x + 1], i3 = image[rows[j] + x3];
+      const float p = w0 * i0 + w1 * i1 + w2 * i2 + w3 * i3;
+      value += wv[j] * p;
+      dy += ev[j] * p;
+      dx += wv[j] * (d0 * i0 + d1 * i1 + d2 * i2 + d3 * i3);
+    }
+    c->value.v[i] = value;
+    c->ix.v[i] = in_u * dx;
+    c->iy.v[i] = in_v * dy;
+  }
+  counts->clamped += static_cast<size_t>(clamped);
+}
+
+// Samples outside the image or behind the camera lose their residual.
+__attribute__((noinline)) void DropOutside(const PhotoFrame& f,
+                                           Chunk* c,
+                                           PhotoCounts* counts) {
+  const float max_u = static_cast<float>(f.width - 1);
+  const float max_v = static_cast<float>(f.height - 1);
+  float lost = 0;
+  for (int i = 0; i < kLanes; ++i) {
+    const float u = c->u.v[i], v = c->v.v[i];
+    const bool inside = (u >= 0) & (u <= max_u) & (v >= 0) & (v <= max_v) &
+                        (c->z.v[i] > kMinDepth);
+    lost += inside ? 0.0f : c->valid.v[i];
+    c->valid.v[i] = inside ? c->valid.v[i] : 0.0f;
+  }
+  counts->lost += static_cast<size_t>(lost);
+}
+
+// The other ways are chosen a chunk at a time: the bilinear loop stays as fast
+// as if it were alone.
+inline void SampleImage(const PhotoFrame& f, Chunk* c, PhotoCounts* counts) {
+  if (f.sampling == Sampling::kBilinear) {
+    SampleBilinear(f, c, counts);
+  } else if (f.sampling == Sampling::kScharr) {
+    SampleScharr(f, c, counts);
+  } else {
+    SampleBicubic(f, c, counts);
+  }
+  if (f.out_of_image == OutOfImage::kDrop) DropOutside(f, c, counts);
+}
+
+// Intensities to the caller; NaN where the sample is dropped.
+inline void StoreIntensity(const PhotoFrame& f,
+                           const Chunk& c,
+                           int m,
+                           float* __restrict intensity) {
+  for (int i = 0; i < m; ++i) intensity[i] = c.value.v[i];
+  if (f.out_of_image != OutOfImage::kDrop) return;
+  for (int i = 0; i < m; ++i) {
+    if (c.valid.v[i] == 0) intensity[i] = __builtin_nanf("");
+  }
+}
+
 // Adds the Gram matrix of `n` columns (the last one is r) to `gram`.
 inline void AddGram(const Lane* columns, int n, double* gram) {
   for (int i = 0; i < n; ++i) {
@@ -191,6 +320,48 @@ inline float SumSquares(const Lane& r) {
   float sum = 0;
   for (int i = 0; i < kLanes; ++i) sum += r.v[i] * r.v[i];
   return sum;
+}
+
+// Sum of rho(r^2). Residuals, and through `valid` the derivatives, become those
+// of weighted least squares: times sqrt(rho').
+__attribute__((noinline)) float ApplyLoss(const PhotoFrame& f,
+                                          Lane* r,
+                                          Chunk* c) {
+  const float scale = f.loss_scale, c2 = scale * scale, inverse = 1.0f / c2;
+  Lane rho, root;
+  if (f.loss == LossKind::kHuber) {
+    for (int i = 0; i < kLanes; ++i) {
+      const float s = r->v[i] * r->v[i], length = __builtin_fabsf(r->v[i]);
+      const bool inlier = length <= scale;
+      rho.v[i] = inlier ? s : scale * (2 * length - scale);
+      root.v[i] = __builtin_sqrtf(inlier ? 1.0f : scale / length);
+    }
+  } else if (f.loss == LossKind::kCauchy) {
+    for (int i = 0; i < kLanes; ++i) {
+      const float x = r->v[i] * r->v[i] * inverse;
+      rho.v[i] = c2 * __builtin_log1pf(x);
+      root.v[i] = __builtin_sqrtf(1.0f / (1.0f + x));
+    }
+  } else {
+    for (int i = 0; i < kLanes; ++i) {
+      const float x = r->v[i] * r->v[i] * inverse;
+      const float y = x < 1 ? x : 1.0f;
+      rho.v[i] = c2 / 3 * y * (3 + y * (y - 3));
+      root.v[i] = 1 - y;
+    }
+  }
+  float sum = 0;
+  for (int i = 0; i < kLanes; ++i) {
+    sum += rho.v[i];
+    r->v[i] *= root.v[i];
+    c->valid.v[i] *= root.v[i];
+  }
+  return sum;
+}
+
+// The cost of a chunk; prepares the residuals for the Gram matrix.
+inline float CostOf(const PhotoFrame& f, Lane* r, Chunk* c) {
+  return f.loss == LossKind::kSquared ? SumSquares(*r) : ApplyLoss(f, r, c);
 }
 
 // h = grad I D J_pi, the derivative of the intensity w.r.t. y.
@@ -235,12 +406,37 @@ inline void WarpColumns(const Chunk& c, Lane* columns) {
   }
 }
 
+// Bilinear and frozen: a loop of its own, in which nothing is computed that is
+// not stored.
+inline void SamplePlain(const PhotoFrame& frame,
+                        const PhotoTexel* texels,
+                        const uint32_t* ids,
+                        size_t n,
+                        float* intensity,
+                        PhotoCounts* counts) {
+  Chunk c;
+  for (size_t begin = 0; begin < n; begin += kLanes) {
+    const int m = ChunkSize(n - begin);
+    Load(texels, ids + begin, m, &c);
+    Project(frame, &c, counts);
+    if (frame.warp) WarpAnywhere(frame, &c);
+    SampleBilinear(frame, &c, counts);
+    for (int i = 0; i < m; ++i) intensity[begin + i] = c.value.v[i];
+  }
+  counts->used += n;
+}
+
 void Sample(const PhotoFrame& frame,
             const PhotoTexel* texels,
             const uint32_t* ids,
             size_t n,
             float* intensity,
             PhotoCounts* counts) {
+  if (frame.sampling == Sampling::kBilinear &&
+      frame.out_of_image == OutOfImage::kFreeze) {
+    SamplePlain(frame, texels, ids, n, intensity, counts);
+    return;
+  }
   Chunk c;
   for (size_t begin = 0; begin < n; begin += kLanes) {
     const int m = ChunkSize(n - begin);
@@ -248,7 +444,7 @@ void Sample(const PhotoFrame& frame,
     Project(frame, &c, counts);
     if (frame.warp) WarpAnywhere(frame, &c);
     SampleImage(frame, &c, counts);
-    for (int i = 0; i < m; ++i) intensity[begin + i] = c.value.v[i];
+    StoreIntensity(frame, c, m, intensity + begin);
   }
   counts->used += n;
 }
@@ -278,8 +474,8 @@ void SampleGradient(const PhotoFrame& frame,
     if (frame.warp) WarpAnywhere(frame, &c);
     SampleImage(frame, &c, counts);
     PointGradient(frame, frame.warp != nullptr, c, &ha, &hb, &hc);
+    StoreIntensity(frame, c, m, intensity + begin);
     for (int i = 0; i < m; ++i) {
-      intensity[begin + i] = c.value.v[i];
       g1[begin + i] = ha.v[i] * a1[0] + hb.v[i] * a1[1] + hc.v[i] * a1[2];
       g2[begin + i] = ha.v[i] * a2[0] + hb.v[i] * a2[1] + hc.v[i] * a2[2];
     }
@@ -302,6 +498,8 @@ double FrameCell(const PhotoFrame& frame,
   Chunk c;
   Lane columns[15];
   double cost = 0;
+  double* const corner = gram ? gram + GramSize(num_columns) - 1 : nullptr;
+  const double before = gram ? *corner : 0;
   for (size_t begin = 0; begin < n; begin += kLanes) {
     const int m = ChunkSize(n - begin);
     Load(texels, ids + begin, m, &c);
@@ -311,13 +509,14 @@ double FrameCell(const PhotoFrame& frame,
     }
     SampleImage(frame, &c, counts);
     Residuals(c, &columns[num_columns]);
-    cost += static_cast<double>(SumSquares(columns[num_columns]));
+    cost += static_cast<double>(CostOf(frame, &columns[num_columns], &c));
     if (!gram) continue;
     PointGradient(frame, warped, c, &columns[3], &columns[4], &columns[5]);
     PoseColumns(c, columns);
     if (num_columns == 14) WarpColumns(c, columns + 6);
     AddGram(columns, num_columns + 1, gram);
   }
+  if (gram && frame.loss != LossKind::kSquared) *corner = before + cost;
   counts->used += n;
   return cost;
 }
@@ -356,6 +555,8 @@ double PlaneSegment(const PhotoFrame& frame,
   Lane s, ax, ay, az, ha, hb, hc;
   Lane columns[5];
   double cost = 0;
+  double* const corner = gram ? gram + GramSize(4) - 1 : nullptr;
+  const double before = gram ? *corner : 0;
   const float* r = frame.r;
   for (size_t begin = 0; begin < n; begin += kLanes) {
     const int m = ChunkSize(n - begin);
@@ -365,7 +566,7 @@ double PlaneSegment(const PhotoFrame& frame,
     if (frame.warp) WarpAnywhere(frame, &c);
     SampleImage(frame, &c, counts);
     Residuals(c, &columns[4]);
-    cost += static_cast<double>(SumSquares(columns[4]));
+    cost += static_cast<double>(CostOf(frame, &columns[4], &c));
     if (!gram) continue;
     PointGradient(frame, frame.warp != nullptr, c, &ha, &hb, &hc);
     for (int i = 0; i < kLanes; ++i) {
@@ -381,6 +582,7 @@ double PlaneSegment(const PhotoFrame& frame,
     }
     AddGram(columns, 5, gram);
   }
+  if (gram && frame.loss != LossKind::kSquared) *corner = before + cost;
   counts->used += n;
   return cost;
 }

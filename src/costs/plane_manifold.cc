@@ -97,8 +97,8 @@ bool UnitVectorPlaneManifold::MinusJacobian(const double* x,
   RowMajor<3, 4> on_sphere;
   sphere_.MinusJacobian(unit.data(), on_sphere.data());
   Eigen::Map<RowMajor<3, 4>> j(jacobian);
-  j = on_sphere *
-      (Eigen::Matrix4d::Identity() - unit * unit.transpose()) / length;
+  j = on_sphere * (Eigen::Matrix4d::Identity() - unit * unit.transpose()) /
+      length;
   return true;
 }
 

@@ -8,6 +8,14 @@
 
 namespace facet {
 
+// How intensities are read between pixels, and what counts as their gradient.
+enum class Sampling {
+  kBilinear,  // bilinear, its own piecewise derivative
+  kScharr,    // bilinear, gradient = interpolated Scharr / 32 images: not its
+              // derivative, but smoother (method, Sec. 7.3)
+  kBicubic,   // Catmull-Rom, its own derivative: C1
+};
+
 template <typename T>
 struct ImageView {
   const T* data = nullptr;  // row-major, not owned

@@ -3,6 +3,7 @@
 #include "pipeline/photometric_stage.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 
@@ -10,6 +11,7 @@
 #include "texture/fingerprint.h"
 #include "texture/visibility.h"
 #include "util/errors.h"
+#include "util/parallel_for.h"
 #include "util/warnings.h"
 
 namespace facet {
@@ -154,6 +156,19 @@ PhotometricResult RunPhotometricStage(
     problem.images.push_back(ViewOf(images.smooth[k]));
     problem.raw_images.push_back(ViewOf(images.luma[k]));
   }
+  std::vector<std::array<cv::Mat, 3>> channels;
+  if (options.formulation.channels == Channels::kRgb) {
+    channels.resize(keyframes.size());
+    ParallelFor(0, channels.size(), [&](size_t k) {
+      channels[k] = SmoothChannels(images.rgb[k], options.smoothing_sigma_px);
+    });
+    problem.more_images.resize(2);
+    for (size_t k = 0; k < channels.size(); ++k) {
+      problem.images[k] = ViewOf(channels[k][0]);
+      problem.more_images[0].push_back(ViewOf(channels[k][1]));
+      problem.more_images[1].push_back(ViewOf(channels[k][2]));
+    }
+  }
   problem.texels = std::move(sampled.texels);
   problem.observations = std::move(sampled.observations);
   problem.tiles = std::move(sampled.tiles);
@@ -164,6 +179,8 @@ PhotometricResult RunPhotometricStage(
         ComputeDepthMoments(partition, planes, scene, sequence, keyframes,
                             cam_from_world, DepthMomentOptions());
   }
+  CheckObservationLimit(problem.formulation,
+                        problem.observations.size() * problem.NumChannels());
   FinishTextureProblem(&problem);
 
   ReconState state = InitialState(problem, planes);

@@ -28,7 +28,8 @@ json ToJson(const EnergyTerms& t) {
           {"observations", t.observations},
           {"clamped", t.clamped},
           {"clamped_share", t.ClampedShare()},
-          {"behind", t.behind}};
+          {"behind", t.behind},
+          {"lost", t.lost}};
 }
 
 json PhotometricReport(const PhotometricResult& result,

@@ -2,26 +2,51 @@
 // SPDX-License-Identifier: MIT
 #include "problems/color_step.h"
 
+#include <cmath>
+
 #include "problems/tile_samples.h"
 #include "util/parallel_for.h"
 
 namespace facet {
+namespace {
+
+// With a robust loss sum rho may have several minima: of the one reached from
+// the plain mean and the one reached from the colours as they are the lower is
+// taken, tile by tile, so that the step never raises E_c.
+void KeepBetterColors(const TextureProblem& problem,
+                      const TexelTile& tile,
+                      const float* colors,
+                      TileSamples* samples) {
+  if (samples->loss == LossKind::kSquared) return;
+  std::vector<float> from_here(colors, colors + samples->mean.size());
+  ReweightMeans(problem, tile, *samples, &from_here);
+  if (SumLoss(problem, tile, *samples, from_here.data()) <
+      SumLoss(problem, tile, *samples, samples->mean.data())) {
+    samples->mean = std::move(from_here);
+  }
+}
+
+}  // namespace
 
 void SolveColors(const TextureProblem& problem, ReconState* state) {
-  std::vector<float> warps;
-  const std::vector<PhotoFrame> frames =
-      MakePhotoFrames(problem, *state, false, &warps);
-  const std::vector<PhotoTexel> points = PlanePoints(problem, *state);
-  ParallelFor(0, problem.tiles.size(), [&](size_t t) {
-    const TexelTile& tile = problem.tiles[t];
-    TileSamples samples;
-    SampleTile(problem, frames, points, tile, nullptr, nullptr, &samples);
-    for (size_t i = tile.texel_begin; i < tile.texel_end; ++i) {
-      if (problem.views[i] > 0) {
-        state->colors[i] = samples.mean[i - tile.texel_begin];
+  for (int channel = 0; channel < problem.NumChannels(); ++channel) {
+    float* colors = state->colors.data() + channel * problem.texels.size();
+    std::vector<float> warps;
+    const std::vector<PhotoFrame> frames =
+        MakePhotoFrames(problem, *state, false, &warps, channel);
+    const std::vector<PhotoTexel> points =
+        PlanePoints(problem, *state, channel);
+    ParallelFor(0, problem.tiles.size(), [&](size_t t) {
+      const TexelTile& tile = problem.tiles[t];
+      TileSamples samples;
+      SampleTile(problem, frames, points, tile, nullptr, nullptr, &samples);
+      KeepBetterColors(problem, tile, colors + tile.texel_begin, &samples);
+      for (size_t i = tile.texel_begin; i < tile.texel_end; ++i) {
+        const float mean = samples.mean[i - tile.texel_begin];
+        if (problem.views[i] > 0 && !std::isnan(mean)) colors[i] = mean;
       }
-    }
-  });
+    });
+  }
 }
 
 }  // namespace facet

@@ -19,30 +19,27 @@ struct TileSums {
   PhotoCounts counts;
 };
 
-// Sum of squared residuals, either against the state's colours or against the
-// means of what is sampled.
+// Sum of rho of the residuals of a channel against the state's colours; raw: of
+// the squared residuals of the unsmoothed luma against the means of what is
+// sampled.
 TileSums SumResiduals(const TextureProblem& problem,
                       const ReconState& state,
                       bool raw,
-                      bool against_means) {
+                      int channel) {
   std::vector<float> warps;
   const std::vector<PhotoFrame> frames =
-      MakePhotoFrames(problem, state, raw, &warps);
-  const std::vector<PhotoTexel> points = PlanePoints(problem, state);
+      MakePhotoFrames(problem, state, raw, &warps, channel);
+  const std::vector<PhotoTexel> points = PlanePoints(problem, state, channel);
+  const float* state_colors =
+      state.colors.data() + channel * problem.texels.size();
   std::vector<TileSums> sums(problem.tiles.size());
   ParallelFor(0, problem.tiles.size(), [&](size_t t) {
     const TexelTile& tile = problem.tiles[t];
     TileSamples samples;
     SampleTile(problem, frames, points, tile, nullptr, nullptr, &samples);
-    const float* colors = against_means
-                              ? samples.mean.data()
-                              : state.colors.data() + tile.texel_begin;
-    double squares = 0;
-    ForEachSample(problem, tile, samples, [&](size_t, size_t texel, size_t i) {
-      const double r = static_cast<double>(samples.intensity[i]) - colors[texel];
-      squares += r * r;
-    });
-    sums[t] = {squares, samples.counts};
+    const float* colors =
+        raw ? samples.mean.data() : state_colors + tile.texel_begin;
+    sums[t] = {SumLoss(problem, tile, samples, colors), samples.counts};
   });
   TileSums total;
   for (const TileSums& s : sums) {
@@ -111,7 +108,11 @@ EnergyTerms EvaluateEnergy(const TextureProblem& problem,
                            const EnergyWeights& weights,
                            const ReconState& state,
                            bool with_rms_grey) {
-  const TileSums sums = SumResiduals(problem, state, false, false);
+  TileSums sums = SumResiduals(problem, state, false, 0);
+  for (int channel = 1; channel < problem.NumChannels(); ++channel) {
+    sums.squares += SumResiduals(problem, state, false, channel).squares;
+  }
+  sums.squares /= problem.NumChannels();
   EnergyTerms terms;
   terms.texel_weight = weights.texel_weight;
   terms.e_c = weights.texel_weight * sums.squares;
@@ -124,8 +125,9 @@ EnergyTerms EvaluateEnergy(const TextureProblem& problem,
   terms.observations = sums.counts.used;
   terms.clamped = sums.counts.clamped;
   terms.behind = sums.counts.behind;
+  terms.lost = sums.counts.lost;
   if (with_rms_grey && terms.observations > 0) {
-    const TileSums raw = SumResiduals(problem, state, true, true);
+    const TileSums raw = SumResiduals(problem, state, true, 0);
     terms.rms_grey =
         255 * std::sqrt(raw.squares / static_cast<double>(raw.counts.used));
   }

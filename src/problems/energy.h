@@ -5,15 +5,17 @@
 //
 //   E_tex = E_c + lambda1 E_p + lambda2 E_s
 //
-//   E_c  sum over observations of (I - C)^2, intensities in 0-1, times the
-//        texel weight (stride^2: as if the full texel grid took part)
+//   E_c  sum over observations of rho((I - C)^2), intensities in 0-1, times the
+//        texel weight (stride^2: as if the full texel grid took part) and 1 /
+//        channels; rho(s) = s but for the robust losses (costs/robust_loss.h)
 //   E_p  sum over observed texels of (n.p + w)^2 [m^2], times the texel weight
 //   E_s  sum over control vertices of |f|^2 [px^2]
 //
-// No 1/2, no loss: all schedules and solvers are judged by this function, never
-// by Ceres's internal cost (2 * cost = E_tex + E_prior + E_depth; tested). The set of
+// No 1/2: all schedules and solvers are judged by this function, never by
+// Ceres's internal cost (2 * cost = E_tex + E_prior + E_depth; tested). The set of
 // observations is frozen: samples outside the image are clamped to its border
-// and counted.
+// and counted (with OutOfImage::kDrop they have no residual and count as lost).
+// Energies of different formulations do not compare; rms_grey does.
 #pragma once
 
 #include <string>
@@ -43,11 +45,13 @@ struct EnergyTerms {
   double e_prior = 0;                // pose prior (costs/pose_prior.h)
   double e_depth = 0;                // weighted E_d
   double e_tex = 0;                  // E_c + lambda1 E_p + lambda2 E_s
-  double rms_grey = 0;  // rms of I - C on the unsmoothed images, 0-255
-  size_t observations = 0, clamped = 0, behind = 0;
+  // rms of I - C on the unsmoothed luma, 0-255, of all observations and without
+  // any loss, whatever the formulation.
+  double rms_grey = 0;
+  size_t observations = 0, clamped = 0, behind = 0, lost = 0;
 
   double Objective() const { return e_tex + e_prior + e_depth; }
-  double RmsIntensity() const;  // sqrt(mean (I - C)^2), smoothed images, 0-1
+  double RmsIntensity() const;  // sqrt(mean rho), smoothed images, 0-1
   double ClampedShare() const;
   double texel_weight = 1;
 };

@@ -17,7 +17,9 @@ const FormulationAxis& FindAxis(const std::string& name) {
   LOG(FATAL) << "no axis " << name;
 }
 
-bool IsJoint(unsigned blocks) { return (blocks & kColors) && blocks != kColors; }
+bool IsJoint(unsigned blocks) {
+  return (blocks & kColors) && blocks != kColors;
+}
 
 }  // namespace
 
@@ -35,6 +37,27 @@ const std::vector<FormulationAxis>& FormulationAxes() {
        {{"left", "T <- Exp(xi) T; the paper"},
         {"right", "T <- T Exp(xi)"},
         {"quaternion", "rotation and translation apart"}}},
+      {"sampling",
+       "intensities between pixels",
+       {{"bilinear", "with its own derivative"},
+        {"scharr", "bilinear, with the gradient of Scharr / 32 images"},
+        {"bicubic", "Catmull-Rom, with its own derivative"}}},
+      {"loss",
+       "rho of a residual, of scale loss_scale",
+       {{"squared", "r^2; the paper"},
+        {"huber", "linear beyond the scale"},
+        {"cauchy", "logarithmic"},
+        {"tukey", "constant beyond the scale"}}},
+      {"out_of_image",
+       "samples that leave their image",
+       {{"freeze", "read its border and count"}, {"drop", "have no residual"}}},
+      {"channels",
+       "residuals of an observation",
+       {{"luma", "one"}, {"rgb", "three, of weight 1/3 each"}}},
+      {"evaluation",
+       "how Ceres gets the residuals of the phases Phi, T and F",
+       {{"compressed", "one small block for all with the same parameters"},
+        {"reference", "an autodiff block an observation, in double; slow"}}},
       {"gauge",
        "what holds the model in place",
        {{"mean",
@@ -62,17 +85,6 @@ const char* AxisDefault(const std::string& name) {
   return FindAxis(name).values.front().name;
 }
 
-int AxisIndex(const std::string& name, const std::string& value) {
-  const FormulationAxis& axis = FindAxis(name);
-  std::string list;
-  for (size_t i = 0; i < axis.values.size(); ++i) {
-    if (value == axis.values[i].name) return static_cast<int>(i);
-    list += (i > 0 ? ", " : "") + std::string(axis.values[i].name);
-  }
-  throw OptionsError("--" + name + "=" + value + " is not possible: use " +
-                     list);
-}
-
 void CheckFormulation(const Formulation& formulation,
                       const std::vector<unsigned>& phases) {
   for (const unsigned blocks : phases) {
@@ -83,7 +95,27 @@ void CheckFormulation(const Formulation& formulation,
           ": its Hessian knows normalised planes only; use another --plane, or "
           "a schedule with phases Phi");
     }
+    if (IsJoint(blocks) && formulation.evaluation == Evaluation::kReference) {
+      throw OptionsError(
+          "--evaluation=reference cannot be solved in the phase " +
+          BlockSetName(blocks) +
+          ": the joint solve has no residual blocks; use a schedule of "
+          "separate phases, as 10x[C; Phi; T+F]");
+    }
   }
+}
+
+void CheckObservationLimit(const Formulation& formulation,
+                           size_t observations) {
+  if (formulation.evaluation != Evaluation::kReference ||
+      observations <= kMaxReferenceObservations) {
+    return;
+  }
+  throw OptionsError(
+      "--evaluation=reference builds a residual block for each of the " +
+      std::to_string(observations) + " observations, and is limited to " +
+      std::to_string(kMaxReferenceObservations) +
+      "; raise --texel_stride or use --evaluation=compressed");
 }
 
 }  // namespace facet

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "costs/photo_kernel.h"
 #include "costs/plane_manifold.h"
 #include "costs/se3_manifold.h"
 
@@ -19,11 +20,31 @@ namespace facet {
 // What holds the model in place (problems/gauge.h, costs/pose_prior.h).
 enum class Gauge { kMean, kPrior, kFirst, kNone };
 
+enum class Channels {
+  kLuma,  // one residual an observation
+  kRgb,   // three, each with weight 1/3: E_c keeps its scale
+};
+
+// How Ceres sees the residuals of the phases Phi, T and F.
+enum class Evaluation {
+  kCompressed,  // a small block for all that share parameters (production)
+  kReference,   // an autodiff block an observation, in double
+};
+
+// Residual blocks that kReference may build: each takes about 700 bytes.
+inline constexpr size_t kMaxReferenceObservations = 3000000;
+
 // One choice on each axis but the gauge, whose parts belong to EnergyWeights
 // and SolverConfig. Constant during an optimisation.
 struct Formulation {
   PlaneKind plane = PlaneKind::kAnchored;
   PoseKind manifold = PoseKind::kLeft;
+  Sampling sampling = Sampling::kBilinear;
+  LossKind loss = LossKind::kSquared;
+  double loss_scale = 0.05;  // of the robust losses [intensity]
+  OutOfImage out_of_image = OutOfImage::kFreeze;
+  Channels channels = Channels::kLuma;
+  Evaluation evaluation = Evaluation::kCompressed;
 };
 
 struct AxisValue {
@@ -45,13 +66,12 @@ const std::vector<FormulationAxis>& FormulationAxes();
 const char* AxisHelp(const std::string& name);
 const char* AxisDefault(const std::string& name);
 
-// The position of `value` on the axis `name`, to be cast to its enum. Throws
-// OptionsError that lists the values.
-int AxisIndex(const std::string& name, const std::string& value);
-
 // Throws OptionsError with the reason if the formulation cannot be solved by
 // phases that free these sets of blocks (BlockSet of problems/solve_blocks.h).
 void CheckFormulation(const Formulation& formulation,
                       const std::vector<unsigned>& phases);
+
+// The same for the number of observations, known when visibility is.
+void CheckObservationLimit(const Formulation& formulation, size_t observations);
 
 }  // namespace facet

@@ -3,6 +3,7 @@
 #include "problems/joint_pass.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 #include "costs/plane_manifold.h"
@@ -59,27 +60,38 @@ TileView ViewAt(const Eigen::Vector3d& q,
   return view;
 }
 
-// T from the mean gradients of the tile's texels and the views' own ones.
-Eigen::Matrix2f ConsensusTensor(const TextureProblem& problem,
+// T from the mean gradients of the tile's texels and the views' own ones; with a
+// robust loss both weighted with rho'.
+Eigen::Matrix2d ConsensusTensor(const TextureProblem& problem,
                                 const TexelTile& tile,
                                 const TileSamples& samples,
                                 double own_share) {
-  std::vector<Eigen::Vector2d> mean(tile.texel_end - tile.texel_begin,
-                                    Eigen::Vector2d::Zero());
+  const size_t num_texels = tile.texel_end - tile.texel_begin;
+  std::vector<double> views(num_texels);
+  for (size_t i = 0; i < num_texels; ++i) {
+    views[i] = problem.views[tile.texel_begin + i];
+  }
+  if (!samples.weight.empty()) {
+    std::fill(views.begin(), views.end(), 0.0);
+    ForEachSample(problem, tile, samples, [&](size_t, size_t texel, size_t i) {
+      views[texel] += samples.weight[i];
+    });
+  }
+  std::vector<Eigen::Vector2d> mean(num_texels, Eigen::Vector2d::Zero());
   Eigen::Matrix2d tensor = Eigen::Matrix2d::Zero();
   ForEachSample(problem, tile, samples, [&](size_t, size_t texel, size_t i) {
+    const double weight = samples.Weight(i);
+    if (weight == 0) return;
     const Eigen::Vector2d g(samples.g1[i], samples.g2[i]);
-    mean[texel] += g;
-    tensor += own_share / problem.views[tile.texel_begin + texel] * g *
-              g.transpose();
+    mean[texel] += weight * g;
+    tensor += own_share * weight / views[texel] * g * g.transpose();
   });
-  for (size_t i = 0; i < mean.size(); ++i) {
-    const double views = problem.views[tile.texel_begin + i];
-    if (views == 0) continue;
-    const Eigen::Vector2d g = mean[i] / views;
+  for (size_t i = 0; i < num_texels; ++i) {
+    if (views[i] == 0) continue;
+    const Eigen::Vector2d g = mean[i] / views[i];
     tensor += (1 - own_share) * g * g.transpose();
   }
-  return tensor.cast<float>();
+  return tensor;
 }
 
 // Exact gradient of one view of a tile, summed over its samples.
@@ -100,11 +112,13 @@ SegmentGradient GradientOf(const TextureProblem& problem,
     const size_t k = offset + i - segment.begin;
     const Eigen::Vector3d q(points[id].x, points[id].y, points[id].z);
     const Eigen::Vector3d d = q - pose.center;
+    const double weight = samples.Weight(k);
+    if (weight == 0) continue;
     const double g1 = samples.g1[k], g2 = samples.g2[k];
     const double gn =
         -(g1 * d.dot(frame.e1) + g2 * d.dot(frame.e2)) / d.dot(frame.n);
-    const double r = static_cast<double>(samples.intensity[k]) -
-                     samples.mean[id - tile.texel_begin];
+    const double r = weight * (static_cast<double>(samples.intensity[k]) -
+                               samples.mean[id - tile.texel_begin]);
     const Eigen::Vector3d rg =
         r * (g1 * frame.e1 + g2 * frame.e2 + gn * frame.n);
     force += rg;
@@ -129,6 +143,17 @@ Eigen::Vector3d TileCenter(const TexelTile& tile,
   return sum / static_cast<double>(tile.texel_end - tile.texel_begin);
 }
 
+// Sum of the weights of one view's samples.
+double WeightOf(const TileSegment& segment,
+                const TileSamples& samples,
+                size_t offset) {
+  const size_t n = segment.end - segment.begin;
+  if (samples.weight.empty()) return static_cast<double>(n);
+  double sum = 0;
+  for (size_t i = 0; i < n; ++i) sum += samples.weight[offset + i];
+  return sum;
+}
+
 size_t TexelsSeen(const TextureProblem& problem, const TexelTile& tile) {
   size_t seen = 0;
   for (size_t i = tile.texel_begin; i < tile.texel_end; ++i) {
@@ -143,12 +168,12 @@ JointPass RunJointPass(const TextureProblem& problem,
                        const ReconState& state,
                        bool with_derivatives,
                        double own_share) {
-  std::vector<float> warps;
-  const std::vector<PhotoFrame> frames =
-      MakePhotoFrames(problem, state, false, &warps);
-  const std::vector<PhotoTexel> points = PlanePoints(problem, state);
-  std::vector<FramePose> poses(frames.size());
-  for (size_t k = 0; k < frames.size(); ++k) {
+  const std::vector<PhotoChannel> channels =
+      MakePhotoChannels(problem, state, PointsAt::kPlane);
+  const std::vector<PhotoTexel>& points = channels[0].points;
+  const double channel_weight = 1.0 / problem.NumChannels();
+  std::vector<FramePose> poses(problem.NumKeyframes());
+  for (size_t k = 0; k < poses.size(); ++k) {
     const Pose pose = state.CamFromWorld(static_cast<int>(k));
     poses[k].r = pose.RotationMatrix();
     poses[k].t = pose * problem.origin;
@@ -169,29 +194,42 @@ JointPass RunJointPass(const TextureProblem& problem,
     const PlaneFrame frame(state.planes.data() + kPlaneSize * tile.plane);
     const Eigen::Vector3f e1 = frame.e1.cast<float>();
     const Eigen::Vector3f e2 = frame.e2.cast<float>();
-    TileSamples samples;
-    SampleTile(problem, frames, points, tile,
-               with_derivatives ? e1.data() : nullptr, e2.data(), &samples);
-    counts[t] = samples.counts;
-    ForEachSample(problem, tile, samples, [&](size_t, size_t texel, size_t i) {
-      const double r =
-          static_cast<double>(samples.intensity[i]) - samples.mean[texel];
-      squares[t] += r * r;
-    });
-    if (!with_derivatives || tile.segment_begin == tile.segment_end) return;
-    pass.tensors[t] = ConsensusTensor(problem, tile, samples, own_share);
     const Eigen::Vector3d center = TileCenter(tile, points);
     const Eigen::Vector3d anchor = problem.anchors[tile.plane] - problem.origin;
-    const float seen = static_cast<float>(TexelsSeen(problem, tile));
+    const double seen = static_cast<double>(TexelsSeen(problem, tile));
+    for (size_t s = tile.segment_begin;
+         with_derivatives && s < tile.segment_end; ++s) {
+      pass.views[s] = ViewAt(center, center - anchor, frame,
+                             poses[problem.segments[s].keyframe]);
+    }
+    Eigen::Matrix2d tensor = Eigen::Matrix2d::Zero();
+    TileSamples samples;
+    for (const PhotoChannel& channel : channels) {
+      SampleTile(problem, channel.frames, points, tile,
+                 with_derivatives ? e1.data() : nullptr, e2.data(), &samples);
+      squares[t] += channel_weight *
+                    SumLoss(problem, tile, samples, samples.mean.data());
+      if (!with_derivatives) continue;
+      tensor +=
+          channel_weight * ConsensusTensor(problem, tile, samples, own_share);
+      for (size_t s = tile.segment_begin; s < tile.segment_end; ++s) {
+        const TileSegment& segment = problem.segments[s];
+        const size_t offset = samples.offset[s - tile.segment_begin];
+        pass.views[s].share += static_cast<float>(
+            channel_weight * WeightOf(segment, samples, offset) / seen);
+        const SegmentGradient gradient =
+            GradientOf(problem, points, tile, segment, samples, offset, frame,
+                       poses[segment.keyframe]);
+        gradients[s].pose += channel_weight * gradient.pose;
+        gradients[s].plane += channel_weight * gradient.plane;
+      }
+    }
+    counts[t] = samples.counts;
+    if (!with_derivatives) return;
+    pass.tensors[t] = tensor.cast<float>();
     for (size_t s = tile.segment_begin; s < tile.segment_end; ++s) {
-      const TileSegment& segment = problem.segments[s];
-      const FramePose& pose = poses[segment.keyframe];
-      pass.views[s] = ViewAt(center, center - anchor, frame, pose);
-      pass.views[s].share =
-          static_cast<float>(segment.end - segment.begin) / seen;
-      gradients[s] = GradientOf(problem, points, tile, segment, samples,
-                                samples.offset[s - tile.segment_begin], frame,
-                                pose);
+      // All dropped or outliers: keeps the sum of shares above 0.
+      pass.views[s].share = std::max(pass.views[s].share, 1e-6f);
     }
   });
   for (size_t t = 0; t < num_tiles; ++t) {
@@ -199,7 +237,7 @@ JointPass RunJointPass(const TextureProblem& problem,
     pass.counts += counts[t];
   }
   if (!with_derivatives) return pass;
-  pass.pose_gradient.assign(frames.size(), Vector6d::Zero());
+  pass.pose_gradient.assign(poses.size(), Vector6d::Zero());
   pass.plane_gradient.assign(problem.NumPlanes(), Eigen::Vector4d::Zero());
   for (const TexelTile& tile : problem.tiles) {
     for (size_t s = tile.segment_begin; s < tile.segment_end; ++s) {

@@ -6,7 +6,9 @@
 // Hessian needs.
 //
 // With C = mean (variable projection) the cost is sum (I_i - mean)^2 and its
-// gradient sum (I_i - mean) dI_i, exactly. The Gauss-Newton Hessian of a tile is
+// gradient sum (I_i - mean) dI_i, exactly. (With a robust loss: sum rho and sum
+// rho' (I_i - mean) dI_i about the weighted mean, and views weighted likewise;
+// with three channels, their mean.) The Gauss-Newton Hessian of a tile is
 // built from a consensus tensor: all views see the same texture, so the mean
 // texture gradient gbar(p) stands for every view's own, noisy one:
 //
@@ -37,7 +39,7 @@ struct TileView {
 };
 
 struct JointPass {
-  double squares = 0;  // sum of (I - mean)^2
+  double squares = 0;  // sum of (I - mean)^2, or of its rho
   PhotoCounts counts;
   // With derivatives: half the gradient of `squares`.
   std::vector<Vector6d> pose_gradient;           // by keyframe, left tangent

@@ -11,6 +11,7 @@
 #include "costs/plane_manifold.h"
 #include "costs/plane_moment.h"
 #include "costs/plane_photometric_cost.h"
+#include "problems/reference_blocks.h"
 #include "util/parallel_for.h"
 
 namespace facet {
@@ -79,15 +80,10 @@ void LimitPlaneStep(const SolverConfig& config,
   }
 }
 
-double PlaneCost(const std::vector<const ceres::CostFunction*>& costs,
-                 const double* plane) {
-  double sum = 0;
-  for (const ceres::CostFunction* cost : costs) {
-    double r[5];
-    cost->Evaluate(&plane, r, nullptr);
-    for (int k = 0; k < cost->num_residuals(); ++k) sum += r[k] * r[k];
-  }
-  return sum;
+double Cost(ceres::Problem* problem) {
+  double cost = 0;
+  problem->Evaluate({}, &cost, nullptr, nullptr, nullptr);
+  return cost;
 }
 
 ceres::Solver::Options PlaneSolverOptions(const SolverConfig& config,
@@ -114,10 +110,9 @@ void SolvePlanes(const TextureProblem& problem,
   if (memory->plane_radius.size() != num_planes) {
     memory->plane_radius.assign(num_planes, 1e4);
   }
-  std::vector<float> warps;
-  const std::vector<PhotoFrame> frames =
-      MakePhotoFrames(problem, *state, false, &warps);
-  const std::vector<PhotoTexel> points = MeshPoints(problem, *state);
+  const std::vector<PhotoChannel> channels =
+      MakePhotoChannels(problem, *state, PointsAt::kMesh);
+  const double photo_weight = weights.texel_weight / problem.NumChannels();
   const std::vector<Eigen::Matrix4d> moments =
       PlaneMoments(problem, weights, *state);
   std::vector<int> iterations(num_planes, 0), reverted(num_planes, 0);
@@ -129,18 +124,34 @@ void SolvePlanes(const TextureProblem& problem,
     double* plane = state->planes.data() + kPlaneSize * j;
     const Eigen::Vector4d before = Eigen::Map<Eigen::Vector4d>(plane);
 
-    auto* photometric = new PlanePhotometricCost(
-        frames, segments, points.data(), problem.anchors[j] - problem.origin,
-        weights.texel_weight);
-    auto* moment = new PlaneMomentCost(moments[j], 1);
-    const double cost_before = PlaneCost({photometric, moment}, plane);
     ceres::Problem ceres_problem;
     ceres_problem.AddParameterBlock(
         plane,
         kPlaneSize,
         CreatePlaneManifold(problem.formulation.plane, problem.anchors[j]));
-    ceres_problem.AddResidualBlock(photometric, nullptr, plane);
-    ceres_problem.AddResidualBlock(moment, nullptr, plane);
+    if (problem.formulation.evaluation == Evaluation::kReference) {
+      AddReferencePlane(problem,
+                        *state,
+                        segments,
+                        static_cast<int>(j),
+                        photo_weight,
+                        plane,
+                        &ceres_problem);
+    } else {
+      for (const PhotoChannel& channel : channels) {
+        ceres_problem.AddResidualBlock(
+            new PlanePhotometricCost(channel.frames,
+                                     segments,
+                                     channel.points.data(),
+                                     problem.anchors[j] - problem.origin,
+                                     photo_weight),
+            nullptr,
+            plane);
+      }
+    }
+    ceres_problem.AddResidualBlock(
+        new PlaneMomentCost(moments[j], 1), nullptr, plane);
+    const double cost_before = Cost(&ceres_problem);
     ceres::Solver::Summary solved;
     ceres::Solve(PlaneSolverOptions(config, memory->plane_radius[j]),
                  &ceres_problem, &solved);
@@ -150,7 +161,7 @@ void SolvePlanes(const TextureProblem& problem,
           solved.iterations.back().trust_region_radius, 1e-2, 1e8);
     }
     LimitPlaneStep(config, before, plane);
-    if (!(PlaneCost({photometric, moment}, plane) <= cost_before)) {
+    if (!(Cost(&ceres_problem) <= cost_before)) {
       Eigen::Map<Eigen::Vector4d>(plane, 4) = before;
       reverted[j] = 1;
     }

@@ -14,6 +14,7 @@
 #include "costs/frame_cell_cost.h"
 #include "costs/plane_manifold.h"
 #include "costs/warp_offset.h"
+#include "problems/reference_blocks.h"
 #include "util/parallel_for.h"
 
 namespace facet {
@@ -85,8 +86,7 @@ class FrameProblem {
   FrameProblem(const TextureProblem& problem,
                const EnergyWeights& weights,
                unsigned blocks,
-               const PhotoFrame& frame,
-               const std::vector<PhotoTexel>& points,
+               const std::vector<PhotoChannel>& channels,
                int keyframe,
                ReconState* state)
       : texture_(problem),
@@ -95,11 +95,13 @@ class FrameProblem {
         warp_(state->warps.data() +
               2 * static_cast<size_t>(problem.lattice.NumVertices()) * keyframe) {
     // A pose-only solve still sees a warp that is there already.
-    with_warp_ = (blocks & kWarps) != 0 || frame.warp != nullptr;
-    bins_ = BinByCell(problem, points, state->CamFromWorld(keyframe), keyframe,
-                      !with_warp_);
-    ceres_.AddParameterBlock(pose_, kPoseSize, CreatePoseManifold(problem.formulation.manifold));
-    AddCells(frame, points, weights);
+    with_warp_ = (blocks & kWarps) != 0 ||
+                 channels[0].frames[keyframe].warp != nullptr;
+    bins_ = BinByCell(problem, channels[0].points,
+                      state->CamFromWorld(keyframe), keyframe, !with_warp_);
+    ceres_.AddParameterBlock(pose_, kPoseSize,
+                             CreatePoseManifold(problem.formulation.manifold));
+    AddCells(channels, keyframe, *state, weights);
     if (with_warp_) AddWarpTerm(weights);
     if (weights.pose_prior) {
       ceres_.AddResidualBlock(
@@ -126,26 +128,36 @@ class FrameProblem {
     return warp_ + 2 * texture_.lattice.VertexIndex(column, row);
   }
 
-  void AddCells(const PhotoFrame& frame,
-                const std::vector<PhotoTexel>& points,
+  void AddCells(const std::vector<PhotoChannel>& channels,
+                int keyframe,
+                const ReconState& state,
                 const EnergyWeights& weights) {
+    const double weight = weights.texel_weight / texture_.NumChannels();
     const int columns = with_warp_ ? texture_.lattice.columns - 1 : 1;
     for (size_t c = 0; c + 1 < bins_.begin.size(); ++c) {
       const size_t n = bins_.begin[c + 1] - bins_.begin[c];
       if (n == 0) continue;
       const int a = static_cast<int>(c) % columns;
       const int b = static_cast<int>(c) / columns;
-      auto* cost = new FrameCellCost(frame, texture_.origin, a, b,
-                                     points.data(), bins_.ids.data() +
-                                     bins_.begin[c], n, with_warp_,
-                                     weights.texel_weight);
+      const uint32_t* ids = bins_.ids.data() + bins_.begin[c];
       std::vector<double*> parameters = {pose_};
       if (with_warp_) {
         parameters.insert(parameters.end(),
                           {Vertex(a, b), Vertex(a + 1, b), Vertex(a, b + 1),
                            Vertex(a + 1, b + 1)});
       }
-      ceres_.AddResidualBlock(cost, nullptr, parameters);
+      if (texture_.formulation.evaluation == Evaluation::kReference) {
+        AddReferenceCell(texture_, state, keyframe, a, b, ids, n, weight,
+                         parameters, &ceres_);
+        continue;
+      }
+      for (const PhotoChannel& channel : channels) {
+        ceres_.AddResidualBlock(
+            new FrameCellCost(channel.frames[keyframe], texture_.origin, a, b,
+                              channel.points.data(), ids, n, with_warp_,
+                              weight),
+            nullptr, parameters);
+      }
     }
   }
 
@@ -247,8 +259,7 @@ FrameResult SolveFrame(const TextureProblem& problem,
                        const EnergyWeights& weights,
                        unsigned blocks,
                        const SolverConfig& config,
-                       const PhotoFrame& frame,
-                       const std::vector<PhotoTexel>& points,
+                       const std::vector<PhotoChannel>& channels,
                        int keyframe,
                        double* radius,
                        ReconState* state) {
@@ -258,7 +269,7 @@ FrameResult SolveFrame(const TextureProblem& problem,
   const std::vector<double> pose_before(pose, pose + kPoseSize);
   const std::vector<double> warp_before(warp, warp + num_warp);
 
-  FrameProblem frame_problem(problem, weights, blocks, frame, points, keyframe,
+  FrameProblem frame_problem(problem, weights, blocks, channels, keyframe,
                              state);
   const double cost_before = frame_problem.Cost();
   ceres::Solver::Summary solved;
@@ -293,10 +304,8 @@ void SolvePosesAndWarps(const TextureProblem& problem,
   if (memory->frame_radius.size() != num_frames) {
     memory->frame_radius.assign(num_frames, 1e4);
   }
-  std::vector<float> warps;
-  const std::vector<PhotoFrame> frames =
-      MakePhotoFrames(problem, *state, false, &warps);
-  const std::vector<PhotoTexel> points = PlanePoints(problem, *state);
+  const std::vector<PhotoChannel> channels =
+      MakePhotoChannels(problem, *state, PointsAt::kPlane);
   std::vector<FrameResult> results(num_frames);
   ParallelFor(0, num_frames, [&](size_t k) {
     const size_t n =
@@ -305,7 +314,7 @@ void SolvePosesAndWarps(const TextureProblem& problem,
     const unsigned free =
         config.fix_first_pose && k == 0 ? blocks & ~unsigned{kPoses} : blocks;
     if (free == 0) return;
-    results[k] = SolveFrame(problem, weights, free, config, frames[k], points,
+    results[k] = SolveFrame(problem, weights, free, config, channels,
                             static_cast<int>(k), &memory->frame_radius[k],
                             state);
   });

@@ -119,6 +119,24 @@ void BuildMoments(TextureProblem* problem) {
   });
 }
 
+void BuildGradients(TextureProblem* problem) {
+  problem->gradients_x.clear();
+  problem->gradients_y.clear();
+  if (problem->formulation.sampling != Sampling::kScharr) return;
+  const int num_keyframes = problem->NumKeyframes();
+  const size_t num_images =
+      static_cast<size_t>(problem->NumChannels()) * num_keyframes;
+  problem->gradients_x.resize(num_images);
+  problem->gradients_y.resize(num_images);
+  ParallelFor(0, num_images, [&](size_t i) {
+    ScharrGradients(
+        problem->Image(static_cast<int>(i) / num_keyframes,
+                       static_cast<int>(i) % num_keyframes),
+        &problem->gradients_x[i],
+        &problem->gradients_y[i]);
+  });
+}
+
 }  // namespace
 
 Pose ReconState::CamFromWorld(int keyframe) const {
@@ -181,6 +199,7 @@ void FinishTextureProblem(TextureProblem* problem) {
   BuildSegments(problem);
   CountViews(problem);
   BuildMoments(problem);
+  BuildGradients(problem);
 }
 
 ReconState InitialState(const TextureProblem& problem,
@@ -200,7 +219,7 @@ ReconState InitialState(const TextureProblem& problem,
   state.warps.assign(2 * static_cast<size_t>(problem.lattice.NumVertices()) *
                          problem.NumKeyframes(),
                      0.0);
-  state.colors.assign(problem.texels.size(), 0.0f);
+  state.colors.assign(problem.NumChannels() * problem.texels.size(), 0.0f);
   SolveColors(problem, &state);
   return state;
 }
@@ -208,14 +227,16 @@ ReconState InitialState(const TextureProblem& problem,
 std::vector<PhotoFrame> MakePhotoFrames(const TextureProblem& problem,
                                         const ReconState& state,
                                         bool raw,
-                                        std::vector<float>* warps) {
+                                        std::vector<float>* warps,
+                                        int channel) {
+  const Formulation& formulation = problem.formulation;
   const size_t num_warp = 2 * static_cast<size_t>(problem.lattice.NumVertices());
   warps->assign(state.warps.begin(), state.warps.end());
   std::vector<PhotoFrame> frames(problem.NumKeyframes());
   for (int k = 0; k < problem.NumKeyframes(); ++k) {
     PhotoFrame& f = frames[k];
     const ImageView<float>& image =
-        raw ? problem.raw_images[k] : problem.images[k];
+        raw ? problem.raw_images[k] : problem.Image(channel, k);
     f.image = image.data;
     f.width = image.width;
     f.height = image.height;
@@ -234,13 +255,25 @@ std::vector<PhotoFrame> MakePhotoFrames(const TextureProblem& problem,
     if (std::any_of(begin, begin + num_warp, [](float x) { return x != 0; })) {
       f.warp = begin;
     }
+    if (raw) continue;
+    f.sampling = formulation.sampling;
+    f.loss = formulation.loss;
+    f.loss_scale = static_cast<float>(formulation.loss_scale);
+    f.out_of_image = formulation.out_of_image;
+    if (f.sampling == Sampling::kScharr) {
+      const size_t i = static_cast<size_t>(channel) * frames.size() + k;
+      f.gradient_x = problem.gradients_x[i].data();
+      f.gradient_y = problem.gradients_y[i].data();
+    }
   }
   return frames;
 }
 
 std::vector<PhotoTexel> PlanePoints(const TextureProblem& problem,
-                                    const ReconState& state) {
+                                    const ReconState& state,
+                                    int channel) {
   std::vector<PhotoTexel> points(problem.texels.size());
+  const float* colors = state.colors.data() + channel * points.size();
   ParallelFor(0, problem.tiles.size(), [&](size_t t) {
     const TexelTile& tile = problem.tiles[t];
     const double* plane = state.planes.data() + kPlaneSize * tile.plane;
@@ -251,24 +284,56 @@ std::vector<PhotoTexel> PlanePoints(const TextureProblem& problem,
                                    problem.anchors[tile.plane]) -
           problem.origin;
       points[i] = {static_cast<float>(q.x()), static_cast<float>(q.y()),
-                   static_cast<float>(q.z()), state.colors[i]};
+                   static_cast<float>(q.z()), colors[i]};
     }
   });
   return points;
 }
 
 std::vector<PhotoTexel> MeshPoints(const TextureProblem& problem,
-                                   const ReconState& state) {
+                                   const ReconState& state,
+                                   int channel) {
   std::vector<PhotoTexel> points(problem.texels.size());
+  const float* colors = state.colors.data() + channel * points.size();
   ParallelForChunks(0, points.size(), kTileTexels, [&](size_t a, size_t b) {
     for (size_t i = a; i < b; ++i) {
       const Eigen::Vector3d p =
           problem.texels.position[i].cast<double>() - problem.origin;
       points[i] = {static_cast<float>(p.x()), static_cast<float>(p.y()),
-                   static_cast<float>(p.z()), state.colors[i]};
+                   static_cast<float>(p.z()), colors[i]};
     }
   });
   return points;
+}
+
+std::vector<PhotoChannel> MakePhotoChannels(const TextureProblem& problem,
+                                            const ReconState& state,
+                                            PointsAt points) {
+  std::vector<PhotoChannel> channels(problem.NumChannels());
+  for (size_t c = 0; c < channels.size(); ++c) {
+    const int channel = static_cast<int>(c);
+    channels[c].frames = MakePhotoFrames(
+        problem, state, false, &channels[c].warps, channel);
+    channels[c].points = points == PointsAt::kPlane
+                             ? PlanePoints(problem, state, channel)
+                             : MeshPoints(problem, state, channel);
+  }
+  return channels;
+}
+
+SampledImage SampledImageOf(const TextureProblem& problem,
+                            int channel,
+                            int keyframe) {
+  SampledImage image(problem.Image(channel, keyframe));
+  image.sampling = problem.formulation.sampling;
+  image.gradient_x = image.gradient_y = image.image;
+  if (image.sampling == Sampling::kScharr) {
+    const size_t i =
+        static_cast<size_t>(channel) * problem.NumKeyframes() + keyframe;
+    image.gradient_x.data = problem.gradients_x[i].data();
+    image.gradient_y.data = problem.gradients_y[i].data();
+  }
+  return image;
 }
 
 }  // namespace facet

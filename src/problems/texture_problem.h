@@ -11,6 +11,7 @@
 
 #include "costs/photo_kernel.h"
 #include "costs/pose_prior.h"
+#include "geometry/image_sampler.h"
 #include "geometry/image_view.h"
 #include "geometry/pinhole.h"
 #include "geometry/plane.h"
@@ -29,7 +30,7 @@ struct ReconState {
   std::vector<double> poses;   // 7 a keyframe, layout of costs/se3_manifold.h
   std::vector<double> planes;  // 4 a plane: n, d about its anchor
   std::vector<double> warps;   // 2 * vertices a keyframe [px]; zeros = no warp
-  std::vector<float> colors;   // 1 a texel, luma in [0, 1]
+  std::vector<float> colors;   // 1 a texel in [0, 1], channel by channel
 
   Pose CamFromWorld(int keyframe) const;
   // n.x + w = 0 with w = d - n.c.
@@ -58,7 +59,9 @@ struct TextureProblem {
   Formulation formulation;
   Pinhole camera;        // of the colour images
   WarpLattice lattice;
-  std::vector<ImageView<float>> images;      // luma, pre-smoothed: E_c
+  std::vector<ImageView<float>> images;      // luma or red, pre-smoothed: E_c
+  // Channels::kRgb: green, then blue images.
+  std::vector<std::vector<ImageView<float>>> more_images;
   std::vector<ImageView<float>> raw_images;  // luma, unsmoothed: rms_grey
   TexelSet texels;
   Observations observations;
@@ -72,7 +75,13 @@ struct TextureProblem {
   std::vector<DepthMoment> depth_moments;    // may be empty: no E_d
   std::vector<Pose> initial_cam_from_world;  // centre of the pose prior
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  // of float coordinates
+  // Sampling::kScharr: gradients of all images, channel by channel.
+  std::vector<std::vector<float>> gradients_x, gradients_y;
 
+  int NumChannels() const { return 1 + static_cast<int>(more_images.size()); }
+  const ImageView<float>& Image(int channel, int keyframe) const {
+    return channel == 0 ? images[keyframe] : more_images[channel - 1][keyframe];
+  }
   int NumKeyframes() const { return static_cast<int>(images.size()); }
   int NumPlanes() const { return static_cast<int>(anchors.size()); }
 };
@@ -96,17 +105,39 @@ ReconState InitialState(const TextureProblem& problem,
                         const std::vector<Plane>& planes);
 
 // Keyframes in the kernel's form for the current state. `warps` receives float
-// copies that must live as long as the result. raw = unsmoothed images.
+// copies that must live as long as the result. raw = unsmoothed luma, always
+// bilinear, clamped and squared: what variants are compared by.
 std::vector<PhotoFrame> MakePhotoFrames(const TextureProblem& problem,
                                         const ReconState& state,
                                         bool raw,
-                                        std::vector<float>* warps);
+                                        std::vector<float>* warps,
+                                        int channel = 0);
 
-// Kernel texels at the plane points q (planes of the state), colours included.
+// Kernel texels at the plane points q (planes of the state), colours of the
+// channel included.
 std::vector<PhotoTexel> PlanePoints(const TextureProblem& problem,
-                                    const ReconState& state);
-// Kernel texels at the mesh points p, colours included.
+                                    const ReconState& state,
+                                    int channel = 0);
+// Kernel texels at the mesh points p, colours of the channel included.
 std::vector<PhotoTexel> MeshPoints(const TextureProblem& problem,
-                                   const ReconState& state);
+                                   const ReconState& state,
+                                   int channel = 0);
+
+// What the kernel reads for one channel of E_c.
+struct PhotoChannel {
+  std::vector<float> warps;
+  std::vector<PhotoFrame> frames;
+  std::vector<PhotoTexel> points;
+};
+
+enum class PointsAt { kPlane, kMesh };
+std::vector<PhotoChannel> MakePhotoChannels(const TextureProblem& problem,
+                                            const ReconState& state,
+                                            PointsAt points);
+
+// An image with its gradients, for the double reference.
+SampledImage SampledImageOf(const TextureProblem& problem,
+                            int channel,
+                            int keyframe);
 
 }  // namespace facet

@@ -17,10 +17,11 @@ std::string CsvLine(int round,
                     double cpu_s) {
   char line[512];
   std::snprintf(line, sizeof(line),
-                "%d,%s,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.6f,%zu,%zu,%zu,%d,%d,%d,%d,"
-                "%.3f,%.3f\n",
-                round, phase.c_str(), e.e_c, e.e_p, e.e_s, e.e_tex, e.e_prior, e.e_depth,
-                e.rms_grey, e.observations, e.clamped, e.behind,
+                "%d,%s,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.6f,%zu,%zu,%zu,%zu,%d,%d,"
+                "%d,%d,%.3f,%.3f\n",
+                round, phase.c_str(), e.e_c, e.e_p, e.e_s, e.e_tex, e.e_prior,
+                e.e_depth, e.rms_grey, e.observations, e.clamped, e.behind,
+                e.lost,
                 summary ? summary->accepted : 1,
                 summary ? summary->problems : 0,
                 summary ? summary->iterations : 0,
@@ -74,8 +75,9 @@ Trace RunSchedule(const TextureProblem& problem,
 
 std::string TraceCsv(const Trace& trace) {
   std::string csv =
-      "round,phase,E_c,E_p_m2,E_s_px2,E_tex,E_prior,E_depth,rms_grey_255,observations,"
-      "clamped,behind,accepted,problems,iterations,reverted,wall_s,cpu_s\n";
+      "round,phase,E_c,E_p_m2,E_s_px2,E_tex,E_prior,E_depth,rms_grey_255,"
+      "observations,clamped,behind,lost,accepted,problems,iterations,reverted,"
+      "wall_s,cpu_s\n";
   csv += CsvLine(0, "initial", trace.initial, nullptr, 0, 0);
   for (const TraceRow& row : trace.rows) {
     csv += CsvLine(row.round, row.phase.blocks, row.phase.after, &row.phase,

@@ -7,6 +7,27 @@
 #include "util/parallel_for.h"
 
 namespace facet {
+namespace {
+
+cv::Mat Smooth(const cv::Mat& image, double sigma) {
+  if (!(sigma > 0)) return image;
+  cv::Mat smooth;
+  cv::GaussianBlur(
+      image, smooth, cv::Size(), sigma, sigma, cv::BORDER_REFLECT_101);
+  return smooth;
+}
+
+}  // namespace
+
+std::array<cv::Mat, 3> SmoothChannels(const cv::Mat& rgb, double sigma) {
+  std::array<cv::Mat, 3> channels;
+  cv::split(rgb, channels.data());
+  for (cv::Mat& channel : channels) {
+    channel.convertTo(channel, CV_32F, 1.0 / 255);
+    channel = Smooth(channel, sigma);
+  }
+  return channels;
+}
 
 KeyframeImages LoadKeyframeImages(const RgbdSequence& sequence,
                                   const std::vector<int>& keyframes,
@@ -18,16 +39,7 @@ KeyframeImages LoadKeyframeImages(const RgbdSequence& sequence,
   ParallelFor(0, keyframes.size(), [&](size_t k) {
     images.rgb[k] = sequence.LoadColor(keyframes[k]);
     images.luma[k] = LumaFromRgb(images.rgb[k]);
-    if (sigma > 0) {
-      cv::GaussianBlur(images.luma[k],
-                       images.smooth[k],
-                       cv::Size(),
-                       sigma,
-                       sigma,
-                       cv::BORDER_REFLECT_101);
-    } else {
-      images.smooth[k] = images.luma[k];
-    }
+    images.smooth[k] = Smooth(images.luma[k], sigma);
   });
   return images;
 }

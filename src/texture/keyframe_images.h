@@ -6,6 +6,7 @@
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <array>
 #include <vector>
 
 #include "rgbd/sequence.h"
@@ -20,6 +21,10 @@ struct KeyframeImages {
 
   size_t size() const { return rgb.size(); }
 };
+
+// The red, green and blue images of a keyframe as floats in [0, 1], after a
+// Gaussian of `sigma` px.
+std::array<cv::Mat, 3> SmoothChannels(const cv::Mat& rgb, double sigma);
 
 // `keyframes` are indices into sequence.frames(). sigma = 0: smooth = luma
 // (shared, not copied). Throws InputError when an image does not decode.

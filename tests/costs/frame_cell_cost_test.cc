@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "costs/compressed_block.h"
+#include "costs/robust_loss.h"
 #include "tests/costs/photo_scene.h"
 #include "tests/support/tangent_jacobian.h"
 
@@ -191,6 +192,71 @@ TEST(FrameCellCost, BlankImageGivesZeroRowsAndTheRightCost) {
     expected += (0.5 - texel.color) * (0.5 - texel.color);
   }
   EXPECT_NEAR(r.squaredNorm(), expected, kFloatTolerance * expected);
+}
+
+// With a robust loss the rows are weighted, yet cost and gradient are those of
+// sum rho: cost with Jacobian = without = the sum in double, gradient = sum
+// rho' r J. Colours differ by up to 0.2 from the image, the scale lies in
+// between.
+TEST(FrameCellCost, RobustBlocksKeepCostAndGradient) {
+  Random random(4);
+  const LeftSe3Manifold manifold;
+  const size_t n = 200;
+  for (const LossKind loss :
+       {LossKind::kHuber, LossKind::kCauchy, LossKind::kTukey}) {
+    const double scale = 0.1;
+    const TestImage image = BilinearImage(&random);
+    const PhotoScene s = MakePhotoScene(n, &random);
+    PhotoFrame frame = s.Frame(image);
+    frame.loss = loss;
+    frame.loss_scale = static_cast<float>(scale);
+    const FrameCellCost cost(frame,
+                             s.origin,
+                             kCellA,
+                             kCellB,
+                             s.plane_texels.data(),
+                             s.ids.data(),
+                             n,
+                             true,
+                             4);
+    TangentBlocks blocks;
+    blocks.values = {s.pose};
+    for (const auto& v : CellVertices(s, true)) blocks.values.push_back(v);
+    blocks.manifolds = {&manifold, nullptr, nullptr, nullptr, nullptr};
+    Eigen::VectorXd r;
+    const Eigen::MatrixXd j = TangentJacobian(cost, blocks, &r);
+    double expected_cost = 0;
+    Eigen::VectorXd expected = Eigen::VectorXd::Zero(14);
+    double expected_scale = 0;
+    for (size_t i = 0; i < n; ++i) {
+      PhotoScene one = s;
+      one.p = {s.p[i]};
+      const std::unique_ptr<ceres::CostFunction> reference(
+          PhotometricFrameCost::Create(
+              PhotometricFrameCost(PhotometricCost(image.view(),
+                                                   s.camera,
+                                                   s.lattice,
+                                                   kCellA,
+                                                   kCellB,
+                                                   s.p[i],
+                                                   s.anchor),
+                                   s.plane.data(),
+                                   s.plane_texels[i].color),
+              true));
+      Eigen::VectorXd ri;
+      const Eigen::MatrixXd ji = TangentJacobian(*reference, blocks, &ri);
+      const double squared = ri[0] * ri[0];
+      expected_cost += 4 * LossValue(loss, scale, squared);
+      expected += 4 * LossWeight(loss, scale, squared) * ri[0] * ji.transpose();
+      expected_scale += ji.norm();
+    }
+    EXPECT_NEAR(r.squaredNorm(), expected_cost, 1e-5 * expected_cost);
+    EXPECT_NEAR(Residuals(cost, blocks.values).squaredNorm(),
+                r.squaredNorm(),
+                1e-9 * r.squaredNorm());
+    EXPECT_LT((j.transpose() * r - expected).norm(),
+              kFloatTolerance * expected_scale);
+  }
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 
 #include "tests/costs/photo_scene.h"
@@ -164,6 +165,94 @@ TEST_P(PhotoKernelTest, SampleGradientIsTheDerivativeInThePlane) {
       const double expected =
           (value(q + h * axis[k]) - value(q - h * axis[k])) / (2 * h);
       EXPECT_NEAR(g[k][i], expected, 1e-4) << i;
+    }
+  }
+}
+
+// A smooth image, with gradients that the samplings see differently.
+TestImage WavyImage() {
+  TestImage image;
+  image.width = 160;
+  image.height = 120;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      image.pixels.push_back(
+          static_cast<float>(0.5 + 0.2 * std::cos(0.31 * x + 0.17 * y) +
+                             0.2 * std::sin(0.23 * y - 0.11 * x)));
+    }
+  }
+  return image;
+}
+
+// Values and gradients of the other samplings, at points inside, on the border
+// cells (bicubic taps repeat the border) and outside, against the double
+// versions. The camera looks straight at a plane with 1 m a pixel or so, so
+// that the in-plane gradient is that of the image.
+TEST_P(PhotoKernelTest, AllSamplingsAgreeWithTheReference) {
+  Random random(6);
+  const TestImage image = WavyImage();
+  PhotoScene s = MakePhotoScene(1, &random);
+  s.pose = {0, 0, 0, 1, 0, 0, 0};
+  s.origin.setZero();
+  const double z = 2;
+  std::vector<PhotoTexel> texels;
+  std::vector<uint32_t> ids;
+  std::vector<Eigen::Vector2d> pixels;
+  for (int i = 0; i < 200; ++i) {
+    pixels.emplace_back(random.Uniform(-4, 163), random.Uniform(-4, 123));
+    const Eigen::Vector3d x =
+        z * s.camera.Unproject(pixels.back().x(), pixels.back().y());
+    texels.push_back({static_cast<float>(x.x()),
+                      static_cast<float>(x.y()),
+                      static_cast<float>(x.z()),
+                      0});
+    ids.push_back(static_cast<uint32_t>(i));
+  }
+  SampledImage sampled(image.view());
+  std::vector<float> dx, dy;
+  ScharrGradients(image.view(), &dx, &dy);
+  sampled.gradient_x = sampled.gradient_y = sampled.image;
+  sampled.gradient_x.data = dx.data();
+  sampled.gradient_y.data = dy.data();
+  const float e1[3] = {1, 0, 0}, e2[3] = {0, 1, 0};
+  for (const Sampling sampling :
+       {Sampling::kBilinear, Sampling::kScharr, Sampling::kBicubic}) {
+    sampled.sampling = sampling;
+    PhotoFrame frame = s.Frame(image);
+    frame.sampling = sampling;
+    frame.gradient_x = dx.data();
+    frame.gradient_y = dy.data();
+    std::vector<float> intensity(200), g1(200), g2(200);
+    for (const OutOfImage out : {OutOfImage::kFreeze, OutOfImage::kDrop}) {
+      frame.out_of_image = out;
+      PhotoCounts counts;
+      kernel_->sample_gradient(frame,
+                               e1,
+                               e2,
+                               texels.data(),
+                               ids.data(),
+                               200,
+                               intensity.data(),
+                               g1.data(),
+                               g2.data(),
+                               &counts);
+      size_t outside = 0;
+      for (size_t i = 0; i < 200; ++i) {
+        const Sample expected = SampleAt(sampled, pixels[i].x(), pixels[i].y());
+        outside += expected.clamped ? 1 : 0;
+        if (out == OutOfImage::kDrop && expected.clamped) {
+          EXPECT_TRUE(std::isnan(intensity[i]));
+          EXPECT_EQ(g1[i], 0);
+          EXPECT_EQ(g2[i], 0);
+          continue;
+        }
+        EXPECT_NEAR(intensity[i], expected.value, 2e-5);
+        EXPECT_NEAR(g1[i], expected.dx * s.camera.fx / z, 5e-3);
+        EXPECT_NEAR(g2[i], expected.dy * s.camera.fy / z, 5e-3);
+      }
+      EXPECT_EQ(counts.clamped, outside);
+      EXPECT_EQ(counts.lost, out == OutOfImage::kDrop ? outside : 0);
+      EXPECT_GT(outside, 5u);
     }
   }
 }

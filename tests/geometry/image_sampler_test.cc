@@ -94,5 +94,55 @@ TEST_F(ImageSamplerTest, NotANumberIsClampedToo) {
   }
 }
 
+// Catmull-Rom passes through the pixels and is a polynomial in each cell.
+TEST_F(ImageSamplerTest, BicubicPassesThroughThePixels) {
+  for (int y = 0; y < 9; ++y) {
+    for (int x = 0; x < 13; ++x) {
+      EXPECT_NEAR(SampleBicubic(image_, x, y).value, image_.At(x, y), 1e-6);
+    }
+  }
+}
+
+// Over the whole image, border cells (repeated taps) and pixel borders, where
+// bilinear gradients jump. Breaks if a weight and its derivative differ.
+TEST_F(ImageSamplerTest, BicubicGradientIsTheCentralDifference) {
+  Random random(3);
+  const double h = 1e-5;
+  for (int i = 0; i < 300; ++i) {
+    const double u = random.Uniform(0.01, 11.99), v = random.Uniform(0.01, 7.99);
+    const Sample s = SampleBicubic(image_, u, v);
+    const auto value = [&](double x, double y) {
+      return SampleBicubic(image_, x, y).value;
+    };
+    EXPECT_NEAR(s.dx, (value(u + h, v) - value(u - h, v)) / (2 * h), 1e-4);
+    EXPECT_NEAR(s.dy, (value(u, v + h) - value(u, v - h)) / (2 * h), 1e-4);
+    EXPECT_FALSE(s.clamped);
+  }
+  const Sample outside = SampleBicubic(image_, -3, 20);
+  EXPECT_TRUE(outside.clamped);
+  EXPECT_EQ(outside.dx, 0);
+  EXPECT_EQ(outside.dy, 0);
+  EXPECT_NEAR(outside.value, image_.At(0, 8), 1e-6);
+}
+
+// The scale 1/32: breaks with the 1/16 that gives gradients twice too large.
+TEST(ImageSamplerScharr, IsExactOnRamps) {
+  std::vector<float> pixels;
+  for (int y = 0; y < 6; ++y) {
+    for (int x = 0; x < 8; ++x) {
+      pixels.push_back(static_cast<float>(0.25 * x - 0.125 * y));
+    }
+  }
+  const ImageView<float> image = {pixels.data(), 8, 6, 8};
+  std::vector<float> dx, dy;
+  ScharrGradients(image, &dx, &dy);
+  for (int y = 1; y < 5; ++y) {
+    for (int x = 1; x < 7; ++x) {
+      EXPECT_FLOAT_EQ(dx[8 * y + x], 0.25f);
+      EXPECT_FLOAT_EQ(dy[8 * y + x], -0.125f);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace facet

@@ -98,6 +98,30 @@ TEST(StageSettings, EveryOptionBelongsToOneStage) {
          o->photometric.formulation.manifold = PoseKind::kRight;
        }},
       {Stage::kPhotometric,
+       [](auto* o) {
+         o->photometric.formulation.sampling = Sampling::kScharr;
+       }},
+      {Stage::kPhotometric,
+       [](auto* o) {
+         o->photometric.formulation.loss = LossKind::kTukey;
+       }},
+      {Stage::kPhotometric,
+       [](auto* o) {
+         o->photometric.formulation.loss_scale = 0.7;
+       }},
+      {Stage::kPhotometric,
+       [](auto* o) {
+         o->photometric.formulation.out_of_image = OutOfImage::kDrop;
+       }},
+      {Stage::kPhotometric,
+       [](auto* o) {
+         o->photometric.formulation.channels = Channels::kRgb;
+       }},
+      {Stage::kPhotometric,
+       [](auto* o) {
+         o->photometric.formulation.evaluation = Evaluation::kReference;
+       }},
+      {Stage::kPhotometric,
        [](auto* o) { o->photometric.solver.fix_first_pose = true; }},
       {Stage::kPhotometric,
        [](auto* o) { o->photometric.weights.lambda2 = 7; }},
