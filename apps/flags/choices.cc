@@ -15,7 +15,7 @@ std::vector<FlagChoices> MakeTable() {
   std::vector<FlagChoices> table = {{"schedule", {}, true}};
   for (const FormulationAxis& axis : FormulationAxes()) {
     FlagChoices row = {axis.name, {}, true};
-    for (const AxisValue& value : axis.values) row.values.push_back(value.name);
+    for (const FormulationValue& value : axis.values) row.values.push_back(value.name);
     table.push_back(row);
   }
   const std::vector<FlagChoices> others = {

@@ -179,7 +179,7 @@ std::string FlagOfSetting(const std::string& setting) {
       {"max_plane_iterations", "plane_iterations"},
       {"max_pose_iterations", "pose_iterations"},
       {"max_joint_iterations", "joint_iterations"},
-      {"plane_step", "plane"},
+      {"fix_first_pose", "gauge"},
       {"remove_common_motion", "gauge"},
       {"pose_prior", "gauge"},
       {"prior_rotation_rad", "gauge_sigma_deg"},

@@ -47,7 +47,7 @@ struct Formulation {
   Evaluation evaluation = Evaluation::kCompressed;
 };
 
-struct AxisValue {
+struct FormulationValue {
   const char* name;
   const char* text;
 };
@@ -56,7 +56,7 @@ struct AxisValue {
 struct FormulationAxis {
   const char* name;  // also the flag of facet-reconstruct
   const char* text;
-  std::vector<AxisValue> values;
+  std::vector<FormulationValue> values;
 };
 
 const std::vector<FormulationAxis>& FormulationAxes();

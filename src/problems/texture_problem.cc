@@ -12,6 +12,7 @@
 #include "costs/frame_cell_cost.h"
 #include "costs/plane_manifold.h"
 #include "costs/se3_manifold.h"
+#include "geometry/image_sampler.h"
 #include "problems/color_step.h"
 #include "util/parallel_for.h"
 

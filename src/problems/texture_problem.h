@@ -11,7 +11,6 @@
 
 #include "costs/photo_kernel.h"
 #include "costs/pose_prior.h"
-#include "geometry/image_sampler.h"
 #include "geometry/image_view.h"
 #include "geometry/pinhole.h"
 #include "geometry/plane.h"
@@ -23,6 +22,8 @@
 #include "texture/texels.h"
 
 namespace facet {
+
+struct SampledImage;  // geometry/image_sampler.h
 
 // The unknowns, in flat double arrays with stable addresses: Ceres optimises
 // them in place. Copyable: every schedule of a comparison starts from a copy.

@@ -40,13 +40,23 @@ void SampleTile(const TextureProblem& problem,
     const uint32_t* ids = problem.observations.texel.data() + segment.begin;
     const size_t n = segment.end - segment.begin;
     if (e1) {
-      kernel.sample_gradient(frame, e1, e2, points.data(), ids, n,
+      kernel.sample_gradient(frame,
+                             e1,
+                             e2,
+                             points.data(),
+                             ids,
+                             n,
                              samples->intensity.data() + offset,
                              samples->g1.data() + offset,
-                             samples->g2.data() + offset, &samples->counts);
+                             samples->g2.data() + offset,
+                             &samples->counts);
     } else {
-      kernel.sample(frame, points.data(), ids, n,
-                    samples->intensity.data() + offset, &samples->counts);
+      kernel.sample(frame,
+                    points.data(),
+                    ids,
+                    n,
+                    samples->intensity.data() + offset,
+                    &samples->counts);
     }
   }
   samples->mean.assign(tile.texel_end - tile.texel_begin, 0.0f);
@@ -72,10 +82,10 @@ void SampleTile(const TextureProblem& problem,
   ForEachSample(problem, tile, *samples, [&](size_t, size_t texel, size_t i) {
     const double r =
         static_cast<double>(samples->intensity[i]) - samples->mean[texel];
-    samples->weight[i] =
-        std::isnan(r) ? 0.0f
-                      : static_cast<float>(LossWeight(
-                            samples->loss, samples->loss_scale, r * r));
+    samples->weight[i] = std::isnan(r)
+                             ? 0.0f
+                             : static_cast<float>(LossWeight(
+                                   samples->loss, samples->loss_scale, r * r));
   });
 }
 

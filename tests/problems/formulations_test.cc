@@ -76,9 +76,10 @@ double Distance(const std::vector<double>& a, const std::vector<double>& b) {
   return std::sqrt(sum);
 }
 
-// Compressed in float against one autodiff block an observation in double:
-// the same first step for every block set and sampling. The diagonal shift of
-// the compression (4e-6) is seen by directions that damping alone determines.
+// Compressed in float against one autodiff block an observation in double: the
+// same first step for every block set and sampling, to 1e-4. Poses are ill
+// conditioned: there the diagonal shift of the compression (4e-6) alone makes
+// 1e-4 of the step, and warps in cells without texture follow.
 TEST(Formulations, ReferenceAndCompressedTakeTheSameStep) {
   for (const Sampling sampling :
        {Sampling::kBilinear, Sampling::kScharr, Sampling::kBicubic}) {
@@ -92,6 +93,7 @@ TEST(Formulations, ReferenceAndCompressedTakeTheSameStep) {
                                   unsigned{kPoses},
                                   unsigned{kWarps},
                                   kPoses | kWarps}) {
+      const double tolerance = blocks & kPoses ? 5e-4 : 1e-4;
       ReconState compressed = start.state, reference = start.state;
       start.scene.problem.formulation.evaluation = Evaluation::kCompressed;
       EXPECT_TRUE(Solve(start, blocks, config, &compressed).accepted);
@@ -100,7 +102,8 @@ TEST(Formulations, ReferenceAndCompressedTakeTheSameStep) {
       for (const auto member :
            {&ReconState::planes, &ReconState::poses, &ReconState::warps}) {
         const double step = Distance(start.state.*member, reference.*member);
-        EXPECT_LE(Distance(compressed.*member, reference.*member), 1e-3 * step)
+        EXPECT_LE(Distance(compressed.*member, reference.*member),
+                  tolerance * step)
             << BlockSetName(blocks) << " " << static_cast<int>(sampling) << " "
             << Distance(compressed.*member, reference.*member) / step;
       }
@@ -293,7 +296,7 @@ TEST(Formulations, FirstValuesAreTheDefaults) {
   EXPECT_EQ(static_cast<int>(defaults.evaluation), 0);
   for (const FormulationAxis& axis : FormulationAxes()) {
     EXPECT_STREQ(AxisDefault(axis.name), axis.values[0].name);
-    for (const AxisValue& value : axis.values) {
+    for (const FormulationValue& value : axis.values) {
       EXPECT_THAT(AxisHelp(axis.name), HasSubstr(value.name));
     }
   }
