@@ -79,8 +79,10 @@ Eigen::Matrix2d ConsensusTensor(const TextureProblem& problem,
   }
   std::vector<Eigen::Vector2d> mean(num_texels, Eigen::Vector2d::Zero());
   Eigen::Matrix2d tensor = Eigen::Matrix2d::Zero();
+  const float* weights =
+      samples.weight.empty() ? nullptr : samples.weight.data();
   ForEachSample(problem, tile, samples, [&](size_t, size_t texel, size_t i) {
-    const double weight = samples.Weight(i);
+    const double weight = weights ? weights[i] : 1.0;
     if (weight == 0) return;
     const Eigen::Vector2d g(samples.g1[i], samples.g2[i]);
     mean[texel] += weight * g;
@@ -107,12 +109,14 @@ SegmentGradient GradientOf(const TextureProblem& problem,
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   // sum r G
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();  // sum r q x G
   SegmentGradient gradient;
+  const float* weights = samples.weight.empty() ? nullptr
+                                                : samples.weight.data() + offset;
   for (size_t i = segment.begin; i < segment.end; ++i) {
     const uint32_t id = problem.observations.texel[i];
     const size_t k = offset + i - segment.begin;
     const Eigen::Vector3d q(points[id].x, points[id].y, points[id].z);
     const Eigen::Vector3d d = q - pose.center;
-    const double weight = samples.Weight(k);
+    const double weight = weights ? weights[i - segment.begin] : 1.0;
     if (weight == 0) continue;
     const double g1 = samples.g1[k], g2 = samples.g2[k];
     const double gn =

@@ -26,10 +26,6 @@ struct TileSamples {
   LossKind loss = LossKind::kSquared;
   double loss_scale = 1;
   PhotoCounts counts;
-
-  double Weight(size_t sample) const {
-    return weight.empty() ? 1.0 : weight[sample];
-  }
 };
 
 // Samples the tile's plane points in all keyframes that observe it, with the
