@@ -15,6 +15,7 @@
 #include "apps/flags/choices.h"
 #include "apps/flags/reconstruct.h"
 #include "apps/init_app.h"
+#include "pipeline/reconstruct.h"
 #include "schedule/schedule.h"
 #include "util/errors.h"
 
@@ -34,7 +35,8 @@ const std::set<std::string>& RunFlags() {
                                                               "to_stage",
                                                               "previews",
                                                               "profile",
-                                                              "threads"};
+                                                              "threads",
+                                                              "trace_states"};
   return *kFlags;
 }
 
@@ -173,7 +175,7 @@ class PlanMaker {
     }
     if (flag == "schedule") {
       try {
-        CheckSchedule(ParseSchedule(value));
+        ParseSchedule(value);
       } catch (const OptionsError& e) {
         return e.what();
       }
@@ -202,9 +204,9 @@ class PlanMaker {
 
   void MakeVariants() {
     std::vector<std::string> defaults;
-    for (const Axis& axis : plan_.axes) {
+    for (const VaryAxis& axis : plan_.axes) {
       std::string text;
-      for (const AxisValue& value : axis.values) {
+      for (const VaryValue& value : axis.values) {
         if (axis.flag != kFlagSetAxis &&
             Canonical(axis.flag, value.text) == ValueOf(axis.flag)) {
           text = value.text;
@@ -292,10 +294,12 @@ class PlanMaker {
                          const json& state_settings) const {
     const gflags::FlagSaver saver;
     for (const auto& [flag, value] : variant.flags) SetFlag(flag, value);
+    // For the curves of the errors.
+    if (HasTruth(spec)) SetFlag("trace_states", "true");
     json settings;
     try {
       const ReconstructOptions options = ReconstructOptionsFromFlags();
-      CheckSchedule(ParseSchedule(options.photometric.schedule));
+      CheckOptions(options);
       settings = StateSettings(options);
     } catch (const OptionsError& e) {
       throw OptionsError("variant '" + variant.label + "' of " + spec.name +
@@ -314,10 +318,13 @@ class PlanMaker {
     return FlagsText(not_for_runs_);
   }
 
+  static bool HasTruth(const ScanSpec& spec) {
+    return !spec.true_poses.empty() || !spec.true_planes.empty();
+  }
+
   static void PlanEvaluation(ScanPlan* scan) {
     const ScanSpec& spec = scan->spec;
-    const bool truth = !spec.true_poses.empty() || !spec.true_planes.empty();
-    if (!scan->held_out && !truth) return;
+    if (!scan->held_out && !HasTruth(spec)) return;
     scan->evaluate_args = ArgsOfFile("apps/flags/sequence.cc", "");
     std::vector<std::string>* args = &scan->evaluate_args;
     if (scan->held_out) {

@@ -14,6 +14,7 @@
 #include "apps/flags/sequence.h"
 #include "apps/init_app.h"
 #include "eval/evaluation_report.h"
+#include "eval/trace_states.h"
 #include "mesh/mesh_io.h"
 #include "rgbd/trajectory_io.h"
 #include "texture/model_io.h"
@@ -208,15 +209,56 @@ void EvaluatePhotosAndPoses(const RgbdSequence& sequence,
   }
 }
 
+// Errors after every phase of a run that kept its states. `matches` are of its
+// planes, empty without true planes.
+void EvaluateTrace(const RgbdSequence* sequence,
+                   const std::vector<PlaneMatch>& matches,
+                   ModelReport* report) {
+  const fs::path file = fs::path(report->model) / "trace_states.bin";
+  const bool poses = !FLAGS_true_poses.empty();
+  if (!fs::exists(file) || (!poses && matches.empty())) return;
+  const TraceStates trace = ReadTraceStates(file.string());
+  std::vector<NumberedPose> true_poses;
+  if (poses) true_poses = ReadPoses(FLAGS_true_poses);
+  std::vector<NumberedPlane> true_planes;
+  if (!matches.empty()) true_planes = ReadPlanes(FLAGS_true_planes);
+  for (const TraceState& state : trace.states) {
+    TraceErrors errors;
+    if (poses) {
+      std::vector<NumberedPose> keyframes;
+      for (size_t k = 0; k < trace.keyframes.size(); ++k) {
+        keyframes.push_back(
+            {trace.keyframes[k],
+             sequence->PoseFileFromColorCam(state.cam_from_world[k])});
+      }
+      const TrajectoryError error =
+          CompareTrajectories(keyframes, true_poses, FLAGS_frames_per_second);
+      errors.ate_m = error.ate.rmse;
+      errors.rotation_deg = error.rotation.rmse;
+    }
+    if (!matches.empty()) {
+      std::vector<NumberedPlane> planes;
+      for (const Plane& plane : state.planes) {
+        planes.push_back({static_cast<int>(planes.size()), plane});
+      }
+      const PlaneMetrics metrics = MeasurePlanes(planes, matches, true_planes);
+      errors.plane_angle_deg = metrics.mean_angle_deg;
+      errors.plane_offset_m = metrics.mean_offset_m;
+    }
+    report->trace.push_back(errors);
+  }
+}
+
 // Plane labels come with the model, or with simplified.ply of its run folder:
-// the faces of mesh.obj may be in another order.
-void EvaluatePlanes(const TexturedMesh& model, ModelReport* report) {
+// the faces of mesh.obj may be in another order. Returns the matches.
+std::vector<PlaneMatch> EvaluatePlanes(const TexturedMesh& model,
+                                       ModelReport* report) {
   const fs::path folder = report->model;
   if (!fs::is_directory(folder) || !fs::exists(folder / "planes.json")) {
     AddWarning("'" + report->model +
                "' is no run folder with planes.json: its planes are not "
                "compared with the truth");
-    return;
+    return {};
   }
   MeshFile labelled_file{model.mesh, model.face_plane};
   if (labelled_file.face_plane.empty()) {
@@ -234,13 +276,14 @@ void EvaluatePlanes(const TexturedMesh& model, ModelReport* report) {
   PlaneMetricsOptions options;
   options.seed = FLAGS_seed;
   const std::string file = (folder / "planes.json").string();
-  report->planes = ComparePlanes(
-      ReadPlanes(file), labelled, true_planes, labelled_truth, options);
+  const std::vector<PlaneMatch> matches =
+      MatchPlanes(labelled, true_planes, labelled_truth, options);
+  report->planes = MeasurePlanes(ReadPlanes(file), matches, true_planes);
   const std::vector<NumberedPlane> initial = ReadPlanes(file, true);
   if (!initial.empty()) {
-    report->initial_planes =
-        ComparePlanes(initial, labelled, true_planes, labelled_truth, options);
+    report->initial_planes = MeasurePlanes(initial, matches, true_planes);
   }
+  return matches;
 }
 
 // "a.ply" -> "0_a_" so that several models do not overwrite each other.
@@ -273,7 +316,9 @@ ModelReport EvaluateOne(const std::string& path,
     options.seed = FLAGS_seed;
     report.distance = CompareMeshes(model.mesh, *reference, options);
   }
-  if (!FLAGS_true_planes.empty()) EvaluatePlanes(model, &report);
+  std::vector<PlaneMatch> matches;
+  if (!FLAGS_true_planes.empty()) matches = EvaluatePlanes(model, &report);
+  EvaluateTrace(sequence, matches, &report);
   return report;
 }
 

@@ -42,6 +42,10 @@ DEFINE_string(to_stage, "export", "last stage to run");
 DEFINE_int32(threads, 0, "threads to use, 0 = one a core");
 DEFINE_uint64(seed, 0, "recorded; nothing in the pipeline is random today");
 DEFINE_bool(previews, true, "draw previews/*.png");
+DEFINE_bool(trace_states,
+            SolverConfig().trace_states,
+            "keep poses and planes after every phase (trace_states.bin), from "
+            "which facet-evaluate makes curves of their errors");
 
 // Partition and planes
 DEFINE_int32(partition_clusters,
@@ -358,6 +362,7 @@ void TextureOptions(ReconstructOptions* o) {
 void SolverOptions(ReconstructOptions* o) {
   PhotometricOptions& p = o->photometric;
   p.schedule = FLAGS_schedule;
+  p.solver.trace_states = FLAGS_trace_states;
   p.stop.relative_decrease = FLAGS_stop_decrease;
   p.smoothing_sigma_px = FLAGS_smoothing;
   p.warp_columns = FLAGS_warp_columns;

@@ -56,7 +56,7 @@ double BestEnergy(const RunResult& run, const std::vector<RunResult>& runs) {
   for (const RunResult& other : runs) {
     if (!Finished(other) || !SameEnergy(run, other)) continue;
     for (const TracePoint& point : other.trace) {
-      best = std::min(best, point.e_tex);
+      if (point.level == 0) best = std::min(best, point.e_tex);
     }
   }
   return best;
@@ -74,6 +74,7 @@ void CompareRuns(std::vector<RunResult>* runs) {
     }
     std::vector<double> times, energies;
     for (const TracePoint& point : run.trace) {
+      if (point.level > 0) continue;
       times.push_back(point.cpu_s);
       energies.push_back(point.e_tex);
     }

@@ -7,7 +7,7 @@
 namespace facet {
 namespace {
 
-void SetFlags(const Axis& axis, const AxisValue& value, Variant* variant) {
+void SetFlags(const VaryAxis& axis, const VaryValue& value, Variant* variant) {
   if (axis.flag != kFlagSetAxis) {
     variant->flags.emplace_back(axis.flag, value.text);
     return;
@@ -17,16 +17,16 @@ void SetFlags(const Axis& axis, const AxisValue& value, Variant* variant) {
   }
 }
 
-std::string ValueLabel(const Axis& axis, const AxisValue& value) {
+std::string ValueLabel(const VaryAxis& axis, const VaryValue& value) {
   return value.label == value.text ? axis.flag + "=" + value.text : value.label;
 }
 
-std::vector<Variant> Cross(const std::vector<Axis>& axes) {
+std::vector<Variant> Cross(const std::vector<VaryAxis>& axes) {
   std::vector<Variant> variants(1);
-  for (const Axis& axis : axes) {
+  for (const VaryAxis& axis : axes) {
     std::vector<Variant> longer;
     for (const Variant& shorter : variants) {
-      for (const AxisValue& value : axis.values) {
+      for (const VaryValue& value : axis.values) {
         Variant variant = shorter;
         if (!variant.label.empty()) variant.label += ", ";
         variant.label += ValueLabel(axis, value);
@@ -40,13 +40,13 @@ std::vector<Variant> Cross(const std::vector<Axis>& axes) {
   return variants;
 }
 
-std::vector<Variant> OneAtATime(const std::vector<Axis>& axes,
+std::vector<Variant> OneAtATime(const std::vector<VaryAxis>& axes,
                                 const std::vector<std::string>& defaults) {
   const Variant plain = {
       kDefaultLabel, std::vector<std::string>(axes.size(), kDefaultLabel), {}};
   std::vector<Variant> variants = {plain};
   for (size_t a = 0; a < axes.size(); ++a) {
-    for (const AxisValue& value : axes[a].values) {
+    for (const VaryValue& value : axes[a].values) {
       if (value.text == defaults[a]) continue;
       Variant variant = plain;
       variant.label = ValueLabel(axes[a], value);
@@ -60,7 +60,7 @@ std::vector<Variant> OneAtATime(const std::vector<Axis>& axes,
 
 }  // namespace
 
-std::vector<Variant> ExpandMatrix(const std::vector<Axis>& axes,
+std::vector<Variant> ExpandMatrix(const std::vector<VaryAxis>& axes,
                                   Design design,
                                   const std::vector<std::string>& defaults) {
   std::vector<Variant> variants =

@@ -30,7 +30,7 @@ struct Variant {
 // value of every axis (cross), or no flag at all (one_at_a_time).
 //   defaults  by axis, the value that holds without the axis: with
 //             one_at_a_time a value equal to it makes no variant of its own.
-std::vector<Variant> ExpandMatrix(const std::vector<Axis>& axes,
+std::vector<Variant> ExpandMatrix(const std::vector<VaryAxis>& axes,
                                   Design design,
                                   const std::vector<std::string>& defaults);
 

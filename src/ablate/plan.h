@@ -31,7 +31,7 @@ struct ScanPlan {
 struct AblationPlan {
   std::string folder;    // of the ablation, absolute
   std::string programs;  // folder of facet-reconstruct and the others
-  std::vector<Axis> axes;
+  std::vector<VaryAxis> axes;
   std::vector<Variant> variants;
   std::vector<ScanPlan> scans;
   int jobs = 1, threads = 0;  // threads a job, 0 = one a core

@@ -7,13 +7,63 @@
 #include <cmath>
 
 #include "ablate/comparison.h"
-#include "ablate/statistics.h"
 #include "ablate/tables.h"
 
 namespace facet {
 namespace {
 
-enum class Quantity { kTex, kColor, kGap };
+// Something that changes along a trace.
+struct Quantity {
+  const char* name;  // part of the file name
+  const char* title;
+  const char* y_label;
+  bool energy;  // exists for runs with the same energy, on the finest level
+  double (*value)(const TracePoint& point,
+                  const TracePoint& start,
+                  double best);  // lowest E_tex of all comparable runs
+};
+
+using Point = TracePoint;
+
+const Quantity kQuantities[] = {
+    {"E_tex",
+     "E_tex",
+     "E_tex / E_tex(0)",
+     true,
+     [](const Point& p, const Point& start, double) {
+       return p.e_tex / start.e_tex;
+     }},
+    {"E_c",
+     "E_c",
+     "E_c / E_c(0)",
+     true,
+     [](const Point& p, const Point& start, double) {
+       return p.e_c / start.e_c;
+     }},
+    {"gap",
+     "energy left to gain",
+     "(E_tex - E_best) / (E_tex(0) - E_best)",
+     true,
+     [](const Point& p, const Point& start, double best) {
+       // The best variant ends at 0, which has no logarithm.
+       return std::max(1e-4, (p.e_tex - best) / (start.e_tex - best));
+     }},
+    {"ate",
+     "ATE of the keyframes",
+     "ATE [mm]",
+     false,
+     [](const Point& p, const Point&, double) { return p.ate_mm; }},
+    {"plane_angle",
+     "plane angles against the truth",
+     "mean error [deg]",
+     false,
+     [](const Point& p, const Point&, double) { return p.plane_angle_deg; }},
+    {"plane_offset",
+     "plane offsets against the truth",
+     "mean error [mm]",
+     false,
+     [](const Point& p, const Point&, double) { return p.plane_offset_mm; }},
+};
 
 double ValueAt(const Curve& curve, double x) {
   size_t i = 1;
@@ -26,24 +76,20 @@ double ValueAt(const Curve& curve, double x) {
 }
 
 // What a run contributes to a line; empty if there is nothing to show.
-Curve EnergyCurve(const RunResult& run,
-                  const std::vector<RunResult>& runs,
-                  Quantity quantity,
-                  bool against_time) {
+Curve CurveOf(const RunResult& run,
+              const std::vector<RunResult>& runs,
+              const Quantity& quantity,
+              bool against_time) {
   Curve curve;
-  const double start_tex = run.trace[0].e_tex, start_c = run.trace[0].e_c;
+  if (quantity.energy && !run.same_energy) return curve;
   const double best = BestEnergy(run, runs);
-  if (!(start_tex > 0) || !(start_c > 0)) return curve;
-  if (quantity == Quantity::kGap && !(best < start_tex)) return curve;
   for (const TracePoint& point : run.trace) {
-    double y = point.e_tex / start_tex;
-    if (quantity == Quantity::kColor) y = point.e_c / start_c;
-    if (quantity == Quantity::kGap) {
-      y = (point.e_tex - best) / (start_tex - best);
-    }
+    if (quantity.energy && point.level > 0) continue;
+    const double y = quantity.value(point, run.trace[0], best);
+    if (!std::isfinite(y)) continue;
     const double x = against_time ? point.cpu_s : point.iterations;
     // Of phases without iterations the last one counts.
-    if (!curve.x.empty() && curve.x.back() >= x && curve.x.size() > 1) {
+    if (curve.x.size() > 1 && curve.x.back() >= x) {
       curve.y.back() = y;
     } else {
       curve.x.push_back(x);
@@ -62,19 +108,10 @@ class GroupPlots {
 
   void AddTo(std::vector<NamedPlot>* plots) const {
     for (const bool against_time : {true, false}) {
-      AddEnergy(Quantity::kTex, against_time, plots);
-      AddEnergy(Quantity::kColor, against_time, plots);
-      AddEnergy(Quantity::kGap, against_time, plots);
+      for (const Quantity& quantity : kQuantities) {
+        Add(quantity, against_time, plots);
+      }
     }
-    AddErrors("ate_mm", "ate_input_mm", "ATE [mm]", plots);
-    AddErrors("plane_angle_deg",
-              "plane_angle_input_deg",
-              "mean plane angle error [deg]",
-              plots);
-    AddErrors("plane_offset_mm",
-              "plane_offset_input_mm",
-              "mean plane offset error [mm]",
-              plots);
   }
 
  private:
@@ -89,99 +126,43 @@ class GroupPlots {
     return found;
   }
 
-  void AddEnergy(Quantity quantity,
-                 bool against_time,
-                 std::vector<NamedPlot>* plots) const {
+  void Add(const Quantity& quantity,
+           bool against_time,
+           std::vector<NamedPlot>* plots) const {
     Plot plot;
-    const char* name = "E_tex";
-    plot.y_label = "E_tex / E_tex(0)";
-    if (quantity == Quantity::kColor) {
-      name = "E_c";
-      plot.y_label = "E_c / E_c(0)";
-    }
-    if (quantity == Quantity::kGap) {
-      name = "gap";
-      plot.y_label = "(E_tex - E_best) / (E_tex(0) - E_best)";
+    plot.title = group_ + ": " + quantity.title;
+    plot.y_label = quantity.y_label;
+    plot.x_label = against_time ? "CPU time [s]"
+                                : "iterations (mean over a phase's problems)";
+    if (quantity.name == std::string("gap")) {
       plot.log_y = true;
       plot.level = 0.01;
       plot.level_label = "99 % reached";
     }
-    plot.x_label = against_time ? "CPU time [s]"
-                                : "iterations (mean over a phase's problems)";
     for (size_t v = 0; v < plan_.variants.size(); ++v) {
       std::vector<Curve> curves;
       for (const RunResult* run : RunsOf(v)) {
-        if (!run->same_energy) continue;
-        Curve curve = EnergyCurve(*run, runs_, quantity, against_time);
+        Curve curve = CurveOf(*run, runs_, quantity, against_time);
         if (!curve.x.empty()) curves.push_back(std::move(curve));
       }
       if (curves.empty()) continue;
-      PlotLine line = Line(v);
+      PlotLine line;
+      line.label = plan_.variants[v].label;
+      line.index = v;
       line.markers = curves.size() == 1;
       Curve mean = MeanCurve(curves);
-      // The best variant ends at a gap of 0, which has no logarithm.
-      if (quantity == Quantity::kGap) {
-        for (double& y : mean.y) y = std::max(y, 1e-4);
-      }
       line.x = std::move(mean.x);
       line.y = std::move(mean.y);
       plot.lines.push_back(std::move(line));
     }
     if (plot.lines.empty()) return;
-    plot.title = group_ + ": " +
-                 (quantity == Quantity::kGap ? "energy left to gain"
-                                             : std::string(name));
-    Add(std::string(name) + (against_time ? "_time" : "_iterations"),
-        std::move(plot),
-        plots);
-  }
-
-  // A dot a variant: error at the end against the time it took.
-  void AddErrors(const std::string& column,
-                 const std::string& input_column,
-                 const std::string& label,
-                 std::vector<NamedPlot>* plots) const {
-    Plot plot;
-    plot.title = group_ + ": " + label + " at the end";
-    plot.x_label = "CPU time of the schedule [s]";
-    plot.y_label = label;
-    plot.level_label = "input";
-    for (size_t v = 0; v < plan_.variants.size(); ++v) {
-      std::vector<double> times, errors, inputs;
-      for (const RunResult* run : RunsOf(v)) {
-        times.push_back(run->Get("cpu_s"));
-        errors.push_back(run->Get(column));
-        inputs.push_back(run->Get(input_column));
-      }
-      const Sample time = Summarize(times), error = Summarize(errors);
-      if (error.n == 0) continue;
-      plot.level = Summarize(inputs).mean;
-      PlotLine line = Line(v);
-      line.x = {time.mean};
-      line.y = {error.mean};
-      line.markers = true;
-      line.connected = false;
-      plot.lines.push_back(line);
-    }
-    if (plot.lines.empty()) return;
-    Add(column, std::move(plot), plots);
-  }
-
-  PlotLine Line(size_t variant) const {
-    PlotLine line;
-    line.label = plan_.variants[variant].label;
-    line.index = variant;
-    return line;
-  }
-
-  void Add(const std::string& name,
-           Plot plot,
-           std::vector<NamedPlot>* plots) const {
     std::string file;
-    for (const char c : group_ + "_" + name) {
+    for (const char c : group_ + "_" + quantity.name) {
       file += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
     }
-    plots->push_back({file, group_, std::move(plot)});
+    plots->push_back({file + (against_time ? "_time" : "_iterations"),
+                      group_,
+                      std::move(plot)});
   }
 
   const AblationPlan& plan_;

@@ -21,7 +21,7 @@ struct NamedPlot {
 
 // For every group of scans, against CPU time and against iterations: E_tex and
 // E_c as shares of their start, and what is left of E(0) - E_best; with ground
-// truth the final errors against CPU time. Lines are means over the scans of
+// truth the errors of poses and planes. Lines are means over the scans of
 // the group: between phases interpolated, after the last one held. Runs with
 // another energy than the first variant's have no energy line.
 std::vector<NamedPlot> MakePlots(const AblationPlan& plan,

@@ -81,6 +81,10 @@ std::vector<TracePoint> ReadTrace(const std::string& path) {
     const double problems = number("problems");
     if (problems > 0) iterations += number("iterations") / problems;
     TracePoint point;
+    if (column.count("level") > 0) {
+      point.level = static_cast<int>(number("level"));
+    }
+    point.ate_mm = point.plane_angle_deg = point.plane_offset_mm = kNone;
     point.round = static_cast<int>(number("round"));
     point.phase = cells[column["phase"]];
     point.e_c = number("E_c");
@@ -95,6 +99,19 @@ std::vector<TracePoint> ReadTrace(const std::string& path) {
   }
   if (trace.empty()) throw InputError(path + " has no rows");
   return trace;
+}
+
+// The errors of every line of the trace, if the run kept its states.
+void AddTraceErrors(const json& evaluation, std::vector<TracePoint>* trace) {
+  if (!evaluation.is_object() || !evaluation.contains("trace")) return;
+  const json& errors = evaluation["trace"];
+  if (errors.size() != trace->size()) return;
+  for (size_t i = 0; i < errors.size(); ++i) {
+    TracePoint& point = (*trace)[i];
+    point.ate_mm = NumberAt(errors[i], "/ate_mm");
+    point.plane_angle_deg = NumberAt(errors[i], "/plane_angle_deg");
+    point.plane_offset_mm = NumberAt(errors[i], "/plane_offset_mm");
+  }
 }
 
 }  // namespace
@@ -229,6 +246,7 @@ void ReadRun(const std::string& folder, bool held_out, RunResult* result) {
                      "again");
   }
   result->trace = ReadTrace(folder + "/trace.csv");
+  AddTraceErrors(evaluation, &result->trace);
   result->figures.clear();
   for (const Figure& figure : Figures()) {
     double value = kNone;

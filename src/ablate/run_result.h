@@ -32,6 +32,7 @@ size_t FigureIndex(const std::string& column);
 
 // A line of trace.csv.
 struct TracePoint {
+  int level = 0;  // of the image pyramid; energies of others are not comparable
   int round = 0;
   std::string phase;
   double e_c = 0, e_p = 0, e_s = 0, e_tex = 0, rms_grey = 0;
@@ -39,6 +40,8 @@ struct TracePoint {
   // pose, a plane or the joint system has been iterated.
   double iterations = 0;
   double wall_s = 0, cpu_s = 0;
+  // Against the truth, from evaluation.json; NaN = not known.
+  double ate_mm = 0, plane_angle_deg = 0, plane_offset_mm = 0;
 };
 
 struct RunResult {

@@ -12,7 +12,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
-Sample Summarize(const std::vector<double>& values) {
+Sample SampleOf(const std::vector<double>& values) {
   Sample sample;
   double sum = 0;
   for (const double v : values) {
@@ -35,7 +35,7 @@ Sample PairedDifference(const std::vector<double>& values,
   for (size_t i = 0; i < values.size() && i < reference.size(); ++i) {
     differences.push_back(values[i] - reference[i]);
   }
-  return Summarize(differences);
+  return SampleOf(differences);
 }
 
 double TimeToReach(double share,

@@ -15,7 +15,7 @@ struct Sample {
   double spread = 0;  // standard deviation with n - 1; NaN if n < 2
 };
 
-Sample Summarize(const std::vector<double>& values);
+Sample SampleOf(const std::vector<double>& values);
 
 // Of values[i] - reference[i], over the i for which both exist. Pairs share a
 // scan (and so its seed and its noise), whose own effect cancels: the spread of

@@ -205,24 +205,21 @@ class Drawing {
 
   void DrawLine(const PlotLine& line) {
     const std::string stroke = Stroke(line.index);
-    if (line.connected) {
-      text_ += "<polyline fill=\"none\" stroke-width=\"1.8\" " + stroke +
-               " points=\"";
-      for (size_t i = 0; i < line.x.size(); ++i) {
-        if (!Drawn(line.y[i])) continue;
-        text_ += Format("%.1f,%.1f ", X(line.x[i]), Y(line.y[i]));
-      }
-      text_ += "\"/>\n";
+    text_ +=
+        "<polyline fill=\"none\" stroke-width=\"1.8\" " + stroke + " points=\"";
+    for (size_t i = 0; i < line.x.size(); ++i) {
+      if (!Drawn(line.y[i])) continue;
+      text_ += Format("%.1f,%.1f ", X(line.x[i]), Y(line.y[i]));
     }
+    text_ += "\"/>\n";
     if (!line.markers) return;
     for (size_t i = 0; i < line.x.size(); ++i) {
       if (!Drawn(line.y[i])) continue;
       text_ += Format(
-          "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"%g\" fill=\"%s\"/>"
+          "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"2.2\" fill=\"%s\"/>"
           "\n",
           X(line.x[i]),
           Y(line.y[i]),
-          line.connected ? 2.2 : 5.0,
           kColors[line.index % kColors.size()]);
     }
   }

@@ -17,7 +17,6 @@ struct PlotLine {
   size_t index = 0;
   std::vector<double> x, y;  // finite
   bool markers = false;      // dots at the points
-  bool connected = true;     // a line through them
 };
 
 struct Plot {

@@ -84,10 +84,10 @@ GroupTable MakeTable(const AblationPlan& plan,
       const auto values = Column(plan, runs, group, v, f, false);
       const auto compared = Column(plan, runs, group, v, f, true);
       TableCell cell;
-      cell.sample = Summarize(values);
+      cell.sample = SampleOf(values);
       cell.difference =
           PairedDifference(compared, Column(plan, runs, group, 0, f, true));
-      cell.kept_apart = Summarize(compared).n < cell.sample.n;
+      cell.kept_apart = SampleOf(compared).n < cell.sample.n;
       cells.push_back(cell);
     }
     table.cells.push_back(cells);
@@ -140,7 +140,7 @@ void AddRows(const AblationPlan& plan,
 std::string ResultsCsv(const AblationPlan& plan,
                        const std::vector<RunResult>& runs) {
   std::string csv = "scan,variant,group,seed,noise_mm,noise_deg";
-  for (const Axis& axis : plan.axes) csv += "," + axis.flag;
+  for (const VaryAxis& axis : plan.axes) csv += "," + axis.flag;
   csv += ",status,comparable,observation_fingerprint";
   for (const Figure& figure : Figures()) csv += "," + figure.column;
   csv += ",folder\n";
@@ -165,12 +165,12 @@ std::string ResultsCsv(const AblationPlan& plan,
 std::string TracesCsv(const AblationPlan& plan,
                       const std::vector<RunResult>& runs) {
   std::string csv =
-      "scan,variant,round,phase,cpu_s,wall_s,iterations,E_tex,E_c,E_p,E_s,"
-      "rms_grey\n";
+      "scan,variant,level,round,phase,cpu_s,wall_s,iterations,E_tex,E_c,E_p,"
+      "E_s,rms_grey,ate_mm,plane_angle_deg,plane_offset_mm\n";
   for (const RunResult& run : runs) {
     for (const TracePoint& p : run.trace) {
-      csv +=
-          RunColumns(plan, run) + "," + std::to_string(p.round) + "," + p.phase;
+      csv += RunColumns(plan, run) + "," + std::to_string(p.level) + "," +
+             std::to_string(p.round) + "," + p.phase;
       for (const double value : {p.cpu_s,
                                  p.wall_s,
                                  p.iterations,
@@ -178,7 +178,10 @@ std::string TracesCsv(const AblationPlan& plan,
                                  p.e_c,
                                  p.e_p,
                                  p.e_s,
-                                 p.rms_grey}) {
+                                 p.rms_grey,
+                                 p.ate_mm,
+                                 p.plane_angle_deg,
+                                 p.plane_offset_mm}) {
         csv += "," + Number(value);
       }
       csv += "\n";

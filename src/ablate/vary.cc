@@ -33,8 +33,8 @@ class Parser {
   Parser(const std::string& text, const VaryChecks& checks)
       : text_(text), checks_(checks) {}
 
-  std::vector<Axis> Parse() {
-    std::vector<Axis> axes;
+  std::vector<VaryAxis> Parse() {
+    std::vector<VaryAxis> axes;
     SkipSpace();
     if (AtEnd()) Fail(at_, "expected a flag");
     while (!AtEnd()) {
@@ -63,12 +63,12 @@ class Parser {
     while (!AtEnd() && IsSpace(text_[at_])) ++at_;
   }
 
-  Axis ParseAxis(const std::vector<Axis>& before) {
-    Axis axis;
+  VaryAxis ParseAxis(const std::vector<VaryAxis>& before) {
+    VaryAxis axis;
     const size_t start = at_;
     while (!AtEnd() && IsNameChar(text_[at_])) axis.flag += text_[at_++];
     if (axis.flag.empty()) Fail(at_, "expected a flag");
-    for (const Axis& other : before) {
+    for (const VaryAxis& other : before) {
       if (other.flag == axis.flag) {
         Fail(start, "'" + axis.flag + "' is there twice");
       }
@@ -88,10 +88,10 @@ class Parser {
     return axis;
   }
 
-  AxisValue ParseValue(const Axis& axis) {
+  VaryValue ParseValue(const VaryAxis& axis) {
     SkipSpace();
     const size_t start = at_;
-    AxisValue value;
+    VaryValue value;
     value.label = ParseLabel();
     if (At('{')) {
       const size_t open = at_;
@@ -101,7 +101,7 @@ class Parser {
       value.text = PlainValue();
     }
     if (value.label.empty()) value.label = value.text;
-    for (const AxisValue& other : axis.values) {
+    for (const VaryValue& other : axis.values) {
       if (other.text == value.text || other.label == value.label) {
         Fail(start, "'" + value.label + "' is there twice");
       }
@@ -129,14 +129,10 @@ class Parser {
   std::string PlainValue() {
     const size_t start = at_;
     while (!AtEnd() && !AtSeparator() && !At(';')) {
-      if (At('{')) {
-        Fail(at_,
-             "expected a brace only around a whole value or after 'label:'");
-      }
       if (At('}') || At(']') || At(')')) {
         Fail(at_, std::string("nothing opens this '") + text_[at_] + "'");
       }
-      if (At('[') || At('(')) {
+      if (At('[') || At('(') || At('{')) {
         SkipBrackets();
       } else {
         ++at_;
@@ -173,12 +169,14 @@ class Parser {
 
 // Whether PlainValue reads exactly `text`.
 bool IsPlain(const std::string& text) {
-  if (text.empty() || Trim(text) != text) return false;
+  if (text.empty() || Trim(text) != text || text[0] == '{') return false;
   int depth = 0;
+  char before = ' ';
   for (const char c : text) {
-    if (c == '{' || c == '}') return false;
-    if (c == '[' || c == '(') ++depth;
-    if (c == ']' || c == ')') --depth;
+    if (c == '{' && before == ':') return false;  // looks like a label
+    if (!IsSpace(c)) before = c;
+    if (c == '[' || c == '(' || c == '{') ++depth;
+    if (c == ']' || c == ')' || c == '}') --depth;
     if (depth == 0 && (c == ',' || c == '|' || c == ';')) return false;
   }
   return true;
@@ -186,16 +184,17 @@ bool IsPlain(const std::string& text) {
 
 }  // namespace
 
-std::vector<Axis> ParseVary(const std::string& text, const VaryChecks& checks) {
+std::vector<VaryAxis> ParseVary(const std::string& text,
+                                const VaryChecks& checks) {
   return Parser(text, checks).Parse();
 }
 
-std::string ToString(const std::vector<Axis>& axes) {
+std::string ToString(const std::vector<VaryAxis>& axes) {
   std::string text;
-  for (const Axis& axis : axes) {
+  for (const VaryAxis& axis : axes) {
     text += (text.empty() ? "" : "; ") + axis.flag + "=";
     for (size_t i = 0; i < axis.values.size(); ++i) {
-      const AxisValue& value = axis.values[i];
+      const VaryValue& value = axis.values[i];
       if (i > 0) text += ",";
       if (value.label != value.text) {
         text += value.label + ":{" + value.text + "}";

@@ -11,9 +11,10 @@
 //   4x[C+T]}
 //
 // Inside [ ], ( ) and { } the characters , | and ; are ordinary, so that a
-// schedule of one group needs no quotes; braces around a whole value quote it
-// and are taken off. A label is the name of the value in tables and plots. The
-// axis `flags` sets several flags at once:
+// schedule of one group needs no quotes; a value that begins with a brace is
+// quoted by it and ends with its partner; both are taken off. A label is the
+// name of the value in tables and plots. The axis `flags` sets several flags at
+// once:
 //
 //   flags=paper:{--plane=raw4 --stop_decrease=0},lean:{--pose_iterations=2}
 //
@@ -27,14 +28,14 @@
 
 namespace facet {
 
-struct AxisValue {
+struct VaryValue {
   std::string label;  // the text itself unless one is given
   std::string text;
 };
 
-struct Axis {
+struct VaryAxis {
   std::string flag;  // or "flags"
-  std::vector<AxisValue> values;
+  std::vector<VaryValue> values;
 };
 
 // The axis whose values are sets of flags.
@@ -50,10 +51,11 @@ struct VaryChecks {
 
 // Throws OptionsError that points at the character and says what is possible.
 // `checks` may hold empty functions.
-std::vector<Axis> ParseVary(const std::string& text, const VaryChecks& checks);
+std::vector<VaryAxis> ParseVary(const std::string& text,
+                                const VaryChecks& checks);
 
 // ParseVary(ToString(axes)) gives axes back.
-std::string ToString(const std::vector<Axis>& axes);
+std::string ToString(const std::vector<VaryAxis>& axes);
 
 // "--name=value --name=value", each value up to the next " --". Throws
 // OptionsError.

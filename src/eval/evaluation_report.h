@@ -5,6 +5,7 @@
 // Figures that do not exist (NaN) are null in JSON and "-" in tables.
 #pragma once
 
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -18,6 +19,15 @@
 
 namespace facet {
 
+// Errors at one state of a run (eval/trace_states.h); NaN = not measured.
+struct TraceErrors {
+  double ate_m = std::numeric_limits<double>::quiet_NaN();  // of the keyframes
+  double rotation_deg = std::numeric_limits<double>::quiet_NaN();
+  // Means over the planes by area.
+  double plane_angle_deg = std::numeric_limits<double>::quiet_NaN();
+  double plane_offset_m = std::numeric_limits<double>::quiet_NaN();
+};
+
 struct ModelReport {
   std::string model;        // path as given
   std::string pose_source;  // where the poses of the frames come from
@@ -29,6 +39,7 @@ struct ModelReport {
   std::optional<TrajectoryError> trajectory;
   std::optional<TrajectoryError> input_trajectory;  // of the sequence's poses
   std::optional<PlaneMetrics> planes, initial_planes;
+  std::vector<TraceErrors> trace;
 };
 
 nlohmann::json ToJson(const ModelReport& report);

@@ -157,19 +157,16 @@ std::vector<NumberedPlane> ReadPlanes(const std::string& path, bool initial) {
   return planes;
 }
 
-PlaneMetrics ComparePlanes(const std::vector<NumberedPlane>& planes,
-                           const LabelledMesh& model,
-                           const std::vector<NumberedPlane>& true_planes,
-                           const LabelledMesh& true_mesh,
-                           const PlaneMetricsOptions& options) {
+std::vector<PlaneMatch> MatchPlanes(
+    const LabelledMesh& model,
+    const std::vector<NumberedPlane>& true_planes,
+    const LabelledMesh& true_mesh,
+    const PlaneMetricsOptions& options) {
   CheckLabels(model, "the model");
   CheckLabels(true_mesh, "the true mesh");
-  const std::map<int, Plane> plane_of = ById(planes);
   const std::map<int, Plane> truth_of = ById(true_planes);
-  PlaneMetrics metrics;
-  double labelled_area = 0, matched_area = 0;
+  std::vector<PlaneMatch> matches;
   for (const auto& [id, patch] : CollectPatches(model, true_mesh, options)) {
-    labelled_area += patch.area;
     int best = -1;
     size_t best_votes = 0;
     for (const auto& [true_id, votes] : patch.votes) {
@@ -178,31 +175,62 @@ PlaneMetrics ComparePlanes(const std::vector<NumberedPlane>& planes,
         best_votes = votes;
       }
     }
-    const auto plane = plane_of.find(id);
+    PlaneMatch match;
+    match.id = id;
+    match.area = patch.area;
+    match.center = patch.weighted_center / patch.area;
     // Less than half of it on one true plane: it is not that plane.
-    if (plane == plane_of.end() || 2 * best_votes <= patch.points) {
+    if (2 * best_votes > patch.points) {
+      match.true_id = best;
+      match.overlap =
+          static_cast<double>(best_votes) / static_cast<double>(patch.points);
+    }
+    matches.push_back(match);
+  }
+  return matches;
+}
+
+PlaneMetrics MeasurePlanes(const std::vector<NumberedPlane>& planes,
+                           const std::vector<PlaneMatch>& matches,
+                           const std::vector<NumberedPlane>& true_planes) {
+  const std::map<int, Plane> plane_of = ById(planes);
+  const std::map<int, Plane> truth_of = ById(true_planes);
+  PlaneMetrics metrics;
+  double labelled_area = 0, matched_area = 0;
+  for (const PlaneMatch& match : matches) {
+    labelled_area += match.area;
+    const auto plane = plane_of.find(match.id);
+    if (plane == plane_of.end() || match.true_id < 0) {
       ++metrics.unmatched;
       continue;
     }
-    matched_area += patch.area;
+    matched_area += match.area;
     const Plane& estimate = plane->second;
-    const Plane& truth = truth_of.at(best);
+    const Plane& truth = truth_of.at(match.true_id);
     PlaneError error;
-    error.id = id;
-    error.true_id = best;
-    error.area = patch.area;
-    error.overlap =
-        static_cast<double>(best_votes) / static_cast<double>(patch.points);
+    error.id = match.id;
+    error.true_id = match.true_id;
+    error.area = match.area;
+    error.overlap = match.overlap;
     const double sine = estimate.normal.cross(truth.normal).norm();
     const double cosine = std::abs(estimate.normal.dot(truth.normal));
     error.angle_deg = std::atan2(sine, cosine) * kRadToDeg;
-    error.offset_m = std::abs(truth.SignedDistance(
-        estimate.Project(patch.weighted_center / patch.area)));
+    error.offset_m =
+        std::abs(truth.SignedDistance(estimate.Project(match.center)));
     metrics.planes.push_back(error);
   }
   metrics.matched_share = labelled_area > 0 ? matched_area / labelled_area : 0;
   SummarisePlanes(&metrics);
   return metrics;
+}
+
+PlaneMetrics ComparePlanes(const std::vector<NumberedPlane>& planes,
+                           const LabelledMesh& model,
+                           const std::vector<NumberedPlane>& true_planes,
+                           const LabelledMesh& true_mesh,
+                           const PlaneMetricsOptions& options) {
+  return MeasurePlanes(
+      planes, MatchPlanes(model, true_planes, true_mesh, options), true_planes);
 }
 
 }  // namespace facet

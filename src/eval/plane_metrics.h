@@ -60,7 +60,29 @@ struct PlaneMetrics {
   double mean_offset_m = 0, median_offset_m = 0;
 };
 
-// Throws InputError when labels are missing or do not fit the mesh.
+// Which true plane a plane of the model lies on, by the surfaces alone.
+struct PlaneMatch {
+  int id = 0;
+  int true_id = -1;                                  // -1 = none
+  double area = 0, overlap = 0;                      // as in PlaneError
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  // of the model's faces
+};
+
+// All planes with faces in the model, by ascending id. Throws InputError when
+// labels are missing or do not fit the mesh.
+std::vector<PlaneMatch> MatchPlanes(
+    const LabelledMesh& model,
+    const std::vector<NumberedPlane>& true_planes,
+    const LabelledMesh& true_mesh,
+    const PlaneMetricsOptions& options);
+
+// Errors of `planes` given the matches of their surfaces: one matching serves
+// the planes of every state of a run.
+PlaneMetrics MeasurePlanes(const std::vector<NumberedPlane>& planes,
+                           const std::vector<PlaneMatch>& matches,
+                           const std::vector<NumberedPlane>& true_planes);
+
+// Both in one.
 PlaneMetrics ComparePlanes(const std::vector<NumberedPlane>& planes,
                            const LabelledMesh& model,
                            const std::vector<NumberedPlane>& true_planes,

@@ -298,4 +298,21 @@ GeometryArtefact LoadGeometryArtefact(const ReconstructOptions& options) {
   return artefact;
 }
 
+void SaveTraceStates(const ReconstructOptions& options,
+                     const std::vector<int>& frame_numbers,
+                     const TraceState& start,
+                     const Trace& trace) {
+  const std::string path = options.output_path + "/trace_states.bin";
+  std::error_code ignored;
+  std::filesystem::remove(path, ignored);
+  if (!options.photometric.solver.trace_states) return;
+  TraceStates states;
+  states.keyframes = frame_numbers;
+  states.states.push_back(start);
+  for (const TraceRow& row : trace.rows) {
+    states.states.push_back({row.cam_from_world, row.planes});
+  }
+  WriteTraceStates(path, states);
+}
+
 }  // namespace facet

@@ -10,9 +10,11 @@
 #include <string>
 #include <vector>
 
+#include "eval/trace_states.h"
 #include "mesh/planar_partition.h"
 #include "mesh/tri_mesh.h"
 #include "pipeline/config.h"
+#include "schedule/run_schedule.h"
 
 namespace facet {
 
@@ -61,5 +63,13 @@ MeshArtefact LoadMeshArtefact(const ReconstructOptions&, Stage);
 KeyframeArtefact LoadKeyframeArtefact(const ReconstructOptions&);
 PhotometricArtefact LoadPhotometricArtefact(const ReconstructOptions&);
 GeometryArtefact LoadGeometryArtefact(const ReconstructOptions&);
+
+// RUN/trace_states.bin: `start`, then the state after every row of the trace.
+// Without SolverConfig::trace_states the file of an earlier run is removed:
+// none may stay that does not fit trace.csv.
+void SaveTraceStates(const ReconstructOptions&,
+                     const std::vector<int>& frame_numbers,  // a keyframe
+                     const TraceState& start,
+                     const Trace& trace);
 
 }  // namespace facet

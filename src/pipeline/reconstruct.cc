@@ -39,9 +39,7 @@ class Run {
 
   json Execute() {
     CheckFolder();
-    const Schedule schedule = ParseSchedule(options_.photometric.schedule);
-    CheckSchedule(schedule);
-    CheckFormulation(options_.photometric.formulation, PhasesOf(schedule));
+    CheckOptions(options_);
     sequence_ = OpenSequence(options_.sequence_path, options_.sequence);
     report_["stages"] = json::array();
     RunPartition();
@@ -185,14 +183,14 @@ class Run {
       }
     }
     const SimplifyReport& r = result.report;
-    simplified_.report = {{"faces", r.faces_after},
-                          {"collapses", r.collapses},
-                          {"max_error_m", r.max_error_m},
-                          {"flipped_area_share_before",
-                           r.flipped_before.area_share},
-                          {"flipped_area_share", r.flipped_after.area_share},
-                          {"border_edges_before", r.border_edges_before},
-                          {"border_edges_after", r.border_edges_after}};
+    simplified_.report = {
+        {"faces", r.faces_after},
+        {"collapses", r.collapses},
+        {"max_error_m", r.max_error_m},
+        {"flipped_area_share_before", r.flipped_before.area_share},
+        {"flipped_area_share", r.flipped_after.area_share},
+        {"border_edges_before", r.border_edges_before},
+        {"border_edges_after", r.border_edges_after}};
     simplified_.warnings = StageWarnings();
     Save(options_, Stage::kSimplify, simplified_);
     stages_.push_back(clock.Finish(
@@ -254,6 +252,14 @@ class Run {
     }
   }
 
+  std::vector<int> KeyframeNumbers() const {
+    std::vector<int> numbers;
+    for (const int k : keyframes_.keyframes) {
+      numbers.push_back(sequence_->frames()[k].number);
+    }
+    return numbers;
+  }
+
   void RunPhotometric() {
     StageClock clock = Begin("photometric");
     if (FromFile(Stage::kPhotometric)) {
@@ -277,6 +283,10 @@ class Run {
                                                          PrintLine);
     WriteFileAtomically(options_.output_path + "/trace.csv",
                         TraceCsv(result.trace));
+    SaveTraceStates(options_,
+                    KeyframeNumbers(),
+                    {initial_poses_, initial_planes_},
+                    result.trace);
     photometric_.cam_from_world = result.cam_from_world;
     photometric_.planes = result.planes;
     photometric_.warps = result.warps;
@@ -390,6 +400,12 @@ class Run {
 };
 
 }  // namespace
+
+void CheckOptions(const ReconstructOptions& options) {
+  const Schedule schedule = ParseSchedule(options.photometric.schedule);
+  CheckSchedule(schedule);
+  CheckFormulation(options.photometric.formulation, PhasesOf(schedule));
+}
 
 json Reconstruct(const ReconstructOptions& options) {
   return Run(options).Execute();

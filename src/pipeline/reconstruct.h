@@ -11,6 +11,10 @@
 
 namespace facet {
 
+// Throws OptionsError with the reason if options contradict each other: what
+// Reconstruct refuses before it reads anything.
+void CheckOptions(const ReconstructOptions& options);
+
 // Throws OptionsError, InputError, UnsolvableError. Files of the run folder
 // appear atomically; report.json comes last.
 nlohmann::json Reconstruct(const ReconstructOptions& options);

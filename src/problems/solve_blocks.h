@@ -51,6 +51,8 @@ struct SolverConfig {
   double max_warp_px = 5;
   // Also rms_grey after every phase (one more pass over the observations).
   bool trace_rms_grey = true;
+  // Keep poses and planes after every phase (schedule/run_schedule.h).
+  bool trace_states = false;
   // Keyframes with fewer observations keep their pose.
   size_t min_frame_observations = 200;
 };

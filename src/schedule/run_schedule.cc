@@ -29,6 +29,17 @@ std::string CsvLine(int round,
   return line;
 }
 
+void KeepState(const TextureProblem& problem,
+               const ReconState& state,
+               TraceRow* row) {
+  for (int k = 0; k < problem.NumKeyframes(); ++k) {
+    row->cam_from_world.push_back(state.CamFromWorld(k));
+  }
+  for (int j = 0; j < problem.NumPlanes(); ++j) {
+    row->planes.push_back(state.PlaneAt(j, problem.anchors[j]));
+  }
+}
+
 }  // namespace
 
 Trace RunSchedule(const TextureProblem& problem,
@@ -58,6 +69,7 @@ Trace RunSchedule(const TextureProblem& problem,
         current = row.phase.after;
         row.wall_s = watch.WallSeconds();
         row.cpu_s = watch.CpuSecondsSince();
+        if (config.trace_states) KeepState(problem, *state, &row);
         trace.rows.push_back(row);
         if (on_row) on_row(row);
       }

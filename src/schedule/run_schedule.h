@@ -23,6 +23,9 @@ struct TraceRow {
   int group = 0, round = 0;  // round counts through the whole schedule
   PhaseSummary phase;
   double wall_s = 0, cpu_s = 0;  // since the start of the schedule
+  // After the phase; only with SolverConfig::trace_states.
+  std::vector<Pose> cam_from_world;
+  std::vector<Plane> planes;
 };
 
 struct Trace {

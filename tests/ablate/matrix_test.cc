@@ -16,11 +16,13 @@ namespace {
 
 using Flags = std::vector<std::pair<std::string, std::string>>;
 
-std::vector<Axis> Axes(const std::string& text) { return ParseVary(text, {}); }
+std::vector<VaryAxis> Axes(const std::string& text) {
+  return ParseVary(text, {});
+}
 
 // 2 x 3 x 2 combinations, each once, the first of each axis first.
 TEST(Matrix, CrossIsTheProduct) {
-  const std::vector<Axis> axes = Axes("a=1,2; b=x,y,z; flags=--c=1,--c=2");
+  const std::vector<VaryAxis> axes = Axes("a=1,2; b=x,y,z; flags=--c=1,--c=2");
   const auto variants = ExpandMatrix(axes, Design::kCross, {"", "", ""});
   ASSERT_EQ(variants.size(), 12u);
   std::set<Flags> combinations;
@@ -39,7 +41,7 @@ TEST(Matrix, CrossIsTheProduct) {
 // The default and, an axis at a time, what differs from it: 1 + 1 + 3. "1" is
 // the default of a, none of b's values is that of b.
 TEST(Matrix, OneAtATimeIsTheSum) {
-  const std::vector<Axis> axes = Axes("a=1,2; b=x,y,z");
+  const std::vector<VaryAxis> axes = Axes("a=1,2; b=x,y,z");
   const auto variants = ExpandMatrix(axes, Design::kOneAtATime, {"1", ""});
   ASSERT_EQ(variants.size(), 5u);
   EXPECT_TRUE(variants[0].flags.empty());

@@ -15,12 +15,12 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 TEST(Statistics, MeanAndSpread) {
-  const Sample sample = Summarize({2, 4, kNone, 4, 4, 5, 5, 7, 9});
+  const Sample sample = SampleOf({2, 4, kNone, 4, 4, 5, 5, 7, 9});
   EXPECT_EQ(sample.n, 8);
   EXPECT_DOUBLE_EQ(sample.mean, 5);
   EXPECT_DOUBLE_EQ(sample.spread, std::sqrt(32.0 / 7));
-  EXPECT_TRUE(std::isnan(Summarize({}).mean));
-  EXPECT_TRUE(std::isnan(Summarize({1}).spread));
+  EXPECT_TRUE(std::isnan(SampleOf({}).mean));
+  EXPECT_TRUE(std::isnan(SampleOf({1}).spread));
 }
 
 // Scans differ by much more than the variants do: their own effect must cancel
@@ -40,7 +40,7 @@ TEST(Statistics, PairingCancelsTheScan) {
   EXPECT_EQ(difference.n, 18);
   EXPECT_NEAR(difference.mean, -0.25, 1e-12);
   EXPECT_NEAR(difference.spread, 0.125 * std::sqrt(18.0 / 17), 1e-12);
-  EXPECT_GT(Summarize(values).spread, 100);
+  EXPECT_GT(SampleOf(values).spread, 100);
 }
 
 TEST(Statistics, AgainstItselfNothingDiffers) {

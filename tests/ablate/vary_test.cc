@@ -9,7 +9,9 @@
 namespace facet {
 namespace {
 
-std::vector<Axis> Parse(const std::string& text) { return ParseVary(text, {}); }
+std::vector<VaryAxis> Parse(const std::string& text) {
+  return ParseVary(text, {});
+}
 
 // The message of the refusal; empty if the text is accepted.
 std::string Refusal(const std::string& text, const VaryChecks& checks = {}) {
@@ -21,7 +23,8 @@ std::string Refusal(const std::string& text, const VaryChecks& checks = {}) {
   return "";
 }
 
-void ExpectSame(const std::vector<Axis>& a, const std::vector<Axis>& b) {
+void ExpectSame(const std::vector<VaryAxis>& a,
+                const std::vector<VaryAxis>& b) {
   ASSERT_EQ(a.size(), b.size());
   for (size_t i = 0; i < a.size(); ++i) {
     EXPECT_EQ(a[i].flag, b[i].flag);
@@ -34,7 +37,7 @@ void ExpectSame(const std::vector<Axis>& a, const std::vector<Axis>& b) {
 }
 
 TEST(Vary, SchedulesNeedNoQuotes) {
-  const std::vector<Axis> axes =
+  const std::vector<VaryAxis> axes =
       Parse("plane=anchored, raw4; schedule=10x[C; Phi; T+F] | 4x[Phi; C+T]");
   ASSERT_EQ(axes.size(), 2u);
   EXPECT_EQ(axes[0].flag, "plane");
@@ -44,10 +47,13 @@ TEST(Vary, SchedulesNeedNoQuotes) {
   ASSERT_EQ(axes[1].values.size(), 2u);
   EXPECT_EQ(axes[1].values[0].text, "10x[C; Phi; T+F]");
   EXPECT_EQ(axes[1].values[1].text, "4x[Phi; C+T]");
+  // Options of phases and groups come in braces of their own.
+  const std::string text = "4x[C+T{iterations=3, x}; T]{stop=1e-3}";
+  EXPECT_EQ(Parse("schedule=" + text + ",C")[0].values[0].text, text);
 }
 
 TEST(Vary, BracesQuoteAndLabelsName) {
-  const std::vector<Axis> axes =
+  const std::vector<VaryAxis> axes =
       Parse("schedule=warm start:{3x[C]; 4x[C+T]},{ a|b },c;x={},y:{d,{e}}");
   ASSERT_EQ(axes.size(), 2u);
   ASSERT_EQ(axes[0].values.size(), 3u);
@@ -61,7 +67,7 @@ TEST(Vary, BracesQuoteAndLabelsName) {
 
 // Breaks if ToString leaves out a quote that a value needs.
 TEST(Vary, RoundTrip) {
-  const std::vector<Axis> nasty = {
+  const std::vector<VaryAxis> nasty = {
       {"a",
        {{"plain", "plain"},
         {"x,y", "x,y"},
@@ -71,6 +77,8 @@ TEST(Vary, RoundTrip) {
         {" spaced ", " spaced "},
         {"[in; side], out", "[in; side], out"},
         {"{braces}", "{braces}"},
+        {"2x[C{n=3, m}]{stop=1}", "2x[C{n=3, m}]{stop=1}"},
+        {"no:{label}", "no:{label}"},
         {"name", "1x[C]; 2x[T]"}}},
       {"flags", {{"two", "--p=1 --q={2}"}, {"--p=2", "--p=2"}}},
       {"b_2", {{"C:/path", "C:/path"}, {"f(a, b)", "f(a, b)"}}}};
@@ -101,7 +109,7 @@ TEST(Vary, ErrorsPointAtTheCharacter) {
       {"a={1", 3, "nothing closes"},
       {"a=[(])", 5, "expected ')'"},
       {"a=1]", 4, "nothing opens"},
-      {"a=b{c}", 4, "brace only around"},
+      {"a=b{c", 4, "nothing closes"},
       {"a={b}c", 6, "expected ',' or '|' or ';'"},
   };
   for (const auto& c : kCases) {

@@ -37,10 +37,10 @@ Outcome Ablate(const std::string& output,
   return RunProgram("ablate", Arguments(output, extra), 110);
 }
 
-// results.csv by column; no cell of these tests holds a comma or a quote.
-std::vector<std::map<std::string, std::string>> Results(
-    const std::string& folder) {
-  std::istringstream lines(ReadFile(folder + "/results.csv"));
+// A CSV file by column; no cell of these tests holds a comma or a quote.
+std::vector<std::map<std::string, std::string>> ReadCsv(
+    const std::string& path) {
+  std::istringstream lines(ReadFile(path));
   std::vector<std::string> heads;
   std::vector<std::map<std::string, std::string>> rows;
   for (std::string line; std::getline(lines, line);) {
@@ -57,6 +57,11 @@ std::vector<std::map<std::string, std::string>> Results(
     }
   }
   return rows;
+}
+
+std::vector<std::map<std::string, std::string>> Results(
+    const std::string& folder) {
+  return ReadCsv(folder + "/results.csv");
 }
 
 // run.json of each finished run, with the time it was written.
@@ -291,6 +296,25 @@ TEST(CliAblate, SyntheticScansHaveTruth) {
     EXPECT_NE(rows[0].at(column), "") << column;
   }
   EXPECT_NE(rows[1].at("status").find("empty.ply"), std::string::npos);
+
+  // Errors along the trace begin and end where the figures of the run do.
+  const auto trace = ReadCsv(dir / "abl/trace.csv");
+  ASSERT_EQ(trace.size(), 3u) << "the start and two phases";
+  for (const char* column : {"plane_angle", "plane_offset"}) {
+    const std::string unit =
+        column == std::string("plane_angle") ? "_deg" : "_mm";
+    const double first = std::stod(trace.front().at(column + unit));
+    const double last = std::stod(trace.back().at(column + unit));
+    EXPECT_NEAR(first, std::stod(rows[0].at(column + ("_input" + unit))), 1e-6);
+    EXPECT_NEAR(last, std::stod(rows[0].at(column + unit)), 1e-6);
+  }
+  // Of the keyframes alone, which are but some of the frames.
+  EXPECT_NEAR(std::stod(trace.front().at("ate_mm")),
+              std::stod(rows[0].at("ate_input_mm")),
+              0.5 * std::stod(rows[0].at("ate_input_mm")));
+  EXPECT_NE(trace.front().at("ate_mm"), trace.back().at("ate_mm"));
+  EXPECT_EQ(trace[1].at("ate_mm"), trace[0].at("ate_mm"))
+      << "colours move no camera";
 }
 
 }  // namespace
