@@ -276,7 +276,19 @@ class PlanMaker {
     for (const Variant& variant : plan_.variants) {
       scan.run_flags.push_back(RunFlagsOf(spec, variant, settings));
     }
+    CheckThatVariantsDiffer(scan);
     return scan;
+  }
+
+  void CheckThatVariantsDiffer(const ScanPlan& scan) const {
+    for (size_t i = 0; i < scan.run_flags.size(); ++i) {
+      for (size_t j = 0; j < i; ++j) {
+        if (scan.run_flags[i] != scan.run_flags[j]) continue;
+        throw OptionsError("--vary: the variants '" + plan_.variants[j].label +
+                           "' and '" + plan_.variants[i].label +
+                           "' are the same settings: leave one out");
+      }
+    }
   }
 
   // What the artefacts that all runs begin from depend on.

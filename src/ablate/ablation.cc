@@ -6,47 +6,22 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-#include <cctype>
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "ablate/comparison.h"
 #include "ablate/jobs.h"
+#include "ablate/layout.h"
 #include "util/atomic_file.h"
 #include "util/errors.h"
-#include "util/hash.h"
+#include "util/warnings.h"
 
 namespace facet {
 namespace {
 
 using nlohmann::json;
 namespace fs = std::filesystem;
-
-// The artefacts that runs begin from.
-const char* const kStateFiles[] = {
-    "stages/partition.bin", "stages/simplify.bin", "stages/keyframes.bin"};
-
-std::string HashOf(const std::vector<std::string>& texts) {
-  Hash64 hash;
-  for (const std::string& text : texts) hash.Add(text);
-  return hash.Text();
-}
-
-// A mark that cannot be read is no mark.
-json ReadMark(const std::string& path) {
-  if (!fs::exists(path)) return json();
-  return json::parse(ReadFile(path), nullptr, false);
-}
-
-bool HasMark(const std::string& path, const std::string& id) {
-  const json mark = ReadMark(path);
-  return mark.is_object() && mark.value("id", "") == id;
-}
-
-void WriteMark(const std::string& path, const json& mark) {
-  WriteFileAtomically(path, mark.dump(1) + "\n");
-}
 
 // One ablation a folder at a time.
 class FolderLock {
@@ -71,92 +46,6 @@ class FolderLock {
  private:
   int file_ = -1;
 };
-
-// Part of a file name that still tells the variant.
-std::string Slug(const std::string& label) {
-  std::string slug;
-  for (const char c : label) {
-    if (std::isalnum(static_cast<unsigned char>(c))) {
-      slug += c;
-    } else if (!slug.empty() && slug.back() != '-') {
-      slug += '-';
-    }
-    if (slug.size() >= 40) break;
-  }
-  while (!slug.empty() && slug.back() == '-') slug.pop_back();
-  return slug;
-}
-
-// The paths and identities of a plan.
-class Layout {
- public:
-  explicit Layout(const AblationPlan& plan) : plan_(plan) {}
-
-  std::string ScanFolder(size_t s) const { return Folder("scans", s); }
-  std::string StateFolder(size_t s) const { return Folder("states", s); }
-  std::string Program(const std::string& name) const {
-    return plan_.programs + "/facet-" + name;
-  }
-
-  std::string ScanId(size_t s) const {
-    std::vector<std::string> texts = plan_.scans[s].synthesize_args;
-    for (const std::string& arg : plan_.scans[s].fuse_args) {
-      texts.push_back(arg);
-    }
-    return HashOf(texts);
-  }
-  std::string StateId(size_t s) const {
-    return HashOf({plan_.scans[s].state_settings, ScanId(s)});
-  }
-  // Empty while there is no state.
-  std::string StateHash(size_t s) const {
-    const json mark = ReadMark(StateFolder(s) + "/state.json");
-    if (!mark.is_object() || mark.value("id", "") != StateId(s)) return "";
-    return mark.value("hash", "");
-  }
-  RunResult Run(size_t s, size_t v, const std::string& state_hash) const {
-    RunResult run;
-    run.scan = s;
-    run.variant = v;
-    run.id = HashOf({plan_.scans[s].run_flags[v], state_hash});
-    run.folder = Folder("runs", s) + "/" + Slug(plan_.variants[v].label) + "_" +
-                 run.id.substr(0, 8);
-    return run;
-  }
-  std::string EvaluationId(size_t s) const {
-    return HashOf(plan_.scans[s].evaluate_args);
-  }
-  // 0 = nothing, 1 = reconstructed, 2 = evaluated as well.
-  int Progress(const RunResult& run) const {
-    const json mark = ReadMark(run.folder + "/run.json");
-    if (!mark.is_object() || mark.value("id", "") != run.id) return 0;
-    return mark.value("evaluation", "") == EvaluationId(run.scan) ? 2 : 1;
-  }
-
- private:
-  std::string Folder(const std::string& kind, size_t s) const {
-    return plan_.folder + "/" + kind + "/" + plan_.scans[s].spec.name;
-  }
-
-  const AblationPlan& plan_;
-};
-
-std::string HashOfState(const std::string& folder) {
-  Hash64 hash;
-  for (const char* file : kStateFiles) hash.Add(ReadFile(folder + "/" + file));
-  return hash.Text();
-}
-
-// A link where the file system has them: facet replaces files and never writes
-// into one, so the state stays what it is, and stages are large.
-void CopyState(const std::string& from, const std::string& to) {
-  fs::create_directories(to + "/stages");
-  for (const char* file : kStateFiles) {
-    std::error_code error;
-    fs::create_hard_link(from + "/" + file, to + "/" + file, error);
-    if (error) fs::copy_file(from + "/" + file, to + "/" + file);
-  }
-}
 
 class Ablation {
  public:
@@ -187,6 +76,13 @@ class Ablation {
     }
     left_ = jobs.size();
     RunJobs(jobs, plan_.jobs);
+    if (of_other_builds_ > 0) {
+      AddWarning(std::to_string(of_other_builds_) + " of " +
+                 std::to_string(runs_.size()) +
+                 " runs were made by another build of facet-reconstruct: "
+                 "remove " +
+                 plan_.folder + "/runs to do them again");
+    }
     return runs_;
   }
 
@@ -280,18 +176,18 @@ class Ablation {
   // What is left to do for a run; what is done is read at once.
   Job RunJob(size_t r) {
     const RunResult& run = runs_[r];
-    const int progress = layout_.Progress(run);
+    const Progress progress = layout_.ProgressOf(run);
     Job job;
     job.name = Name(run);
     job.failed = [this, r](const std::string& problem) {
       runs_[r].problem = problem;
       print_(Counter() + Name(runs_[r]) + ": " + problem);
     };
-    if (progress == 2) {
+    if (progress == Progress::kEvaluated) {
       Read(r);
       return job;
     }
-    if (progress == 0) job.steps.push_back(ReconstructStep(r));
+    if (progress == Progress::kNothing) job.steps.push_back(ReconstructStep(r));
     job.steps.push_back(EvaluateStep(r));
     return job;
   }
@@ -323,6 +219,7 @@ class Ablation {
                  {"variant", plan_.variants[run.variant].label},
                  {"flags", flags_set},
                  {"state", layout_.StateHash(run.scan)},
+                 {"build", layout_.Build()},
                  {"run_wall_s", finished.wall_s},
                  {"run_cpu_s", finished.cpu_s}});
     };
@@ -368,6 +265,7 @@ class Ablation {
     const json mark = ReadMark(run.folder + "/run.json");
     run.figures[FigureIndex("run_wall_s")] = mark.value("run_wall_s", 0.0);
     run.figures[FigureIndex("run_cpu_s")] = mark.value("run_cpu_s", 0.0);
+    of_other_builds_ += mark.value("build", "") != layout_.Build() ? 1 : 0;
     if (!plan_.allow_different_observations) {
       CheckSameObservations(plan_, run, runs_);
     }
@@ -388,7 +286,7 @@ class Ablation {
   const std::string threads_;
   std::vector<std::string> problems_;  // by scan
   std::vector<RunResult> runs_;
-  size_t left_ = 0, ended_ = 0;
+  size_t left_ = 0, ended_ = 0, of_other_builds_ = 0;
 };
 
 }  // namespace
@@ -409,7 +307,8 @@ std::vector<std::string> RunStates(const AblationPlan& plan) {
     const std::string hash = layout.StateHash(s);
     for (size_t v = 0; v < plan.variants.size(); ++v) {
       const bool done =
-          !hash.empty() && layout.Progress(layout.Run(s, v, hash)) == 2;
+          !hash.empty() &&
+          layout.ProgressOf(layout.Run(s, v, hash)) == Progress::kEvaluated;
       states.push_back(done ? "done" : "to do");
     }
   }
