@@ -12,8 +12,8 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
-Sample SampleOf(const std::vector<double>& values) {
-  Sample sample;
+SampleStatistics StatisticsOf(const std::vector<double>& values) {
+  SampleStatistics sample;
   double sum = 0;
   for (const double v : values) {
     if (std::isnan(v)) continue;
@@ -29,13 +29,13 @@ Sample SampleOf(const std::vector<double>& values) {
   return sample;
 }
 
-Sample PairedDifference(const std::vector<double>& values,
-                        const std::vector<double>& reference) {
+SampleStatistics PairedDifference(const std::vector<double>& values,
+                                  const std::vector<double>& reference) {
   std::vector<double> differences;
   for (size_t i = 0; i < values.size() && i < reference.size(); ++i) {
     differences.push_back(values[i] - reference[i]);
   }
-  return SampleOf(differences);
+  return StatisticsOf(differences);
 }
 
 double TimeToReach(double share,

@@ -9,19 +9,19 @@
 
 namespace facet {
 
-struct Sample {
+struct SampleStatistics {
   int n = 0;
   double mean = 0;    // NaN if n = 0
   double spread = 0;  // standard deviation with n - 1; NaN if n < 2
 };
 
-Sample SampleOf(const std::vector<double>& values);
+SampleStatistics StatisticsOf(const std::vector<double>& values);
 
 // Of values[i] - reference[i], over the i for which both exist. Pairs share a
 // scan (and so its seed and its noise), whose own effect cancels: the spread of
 // the differences is the one to judge a difference of means by.
-Sample PairedDifference(const std::vector<double>& values,
-                        const std::vector<double>& reference);
+SampleStatistics PairedDifference(const std::vector<double>& values,
+                                  const std::vector<double>& reference);
 
 // The first time at which `energies` fell to initial - share (initial - best);
 // NaN if they never did or best is not below initial. `times` and `energies`

@@ -84,10 +84,10 @@ GroupTable MakeTable(const AblationPlan& plan,
       const auto values = Column(plan, runs, group, v, f, false);
       const auto compared = Column(plan, runs, group, v, f, true);
       TableCell cell;
-      cell.sample = SampleOf(values);
+      cell.sample = StatisticsOf(values);
       cell.difference =
           PairedDifference(compared, Column(plan, runs, group, 0, f, true));
-      cell.kept_apart = SampleOf(compared).n < cell.sample.n;
+      cell.kept_apart = StatisticsOf(compared).n < cell.sample.n;
       cells.push_back(cell);
     }
     table.cells.push_back(cells);
@@ -211,7 +211,7 @@ std::vector<GroupTable> MakeTables(const AblationPlan& plan,
 }
 
 std::string CellText(const TableCell& cell, int finished) {
-  const Sample& sample = cell.sample;
+  const SampleStatistics& sample = cell.sample;
   if (sample.n == 0) return "-";
   std::string text = Number(sample.mean, "%.5g");
   if (sample.n > 1) text += " ± " + Number(sample.spread, "%.2g");
@@ -222,7 +222,7 @@ std::string CellText(const TableCell& cell, int finished) {
   return text + (cell.kept_apart ? " (apart)" : "");
 }
 
-std::string DifferenceText(const Sample& difference) {
+std::string DifferenceText(const SampleStatistics& difference) {
   if (difference.n == 0) return "-";
   std::string text = Number(difference.mean, "%+.3g");
   if (difference.n > 1) text += " ± " + Number(difference.spread, "%.2g");

@@ -24,9 +24,9 @@ std::string TracesCsv(const AblationPlan& plan,
 
 // The runs of one variant in one group of scans.
 struct TableCell {
-  Sample sample;            // all finished runs
-  Sample difference;        // paired by scan, against the first variant
-  bool kept_apart = false;  // some runs must not be compared in this figure
+  SampleStatistics sample;      // all finished runs
+  SampleStatistics difference;  // paired by scan, against the first variant
+  bool kept_apart = false;      // some runs must not be compared in this figure
 };
 
 // A group of scans: rows are variants, columns those figures that have a title
@@ -50,7 +50,7 @@ std::vector<std::string> GroupsOf(const AblationPlan& plan);
 // "(apart)" as in TableCell.
 std::string CellText(const TableCell& cell, int finished);
 // Differences carry their sign and the number of pairs.
-std::string DifferenceText(const Sample& difference);
+std::string DifferenceText(const SampleStatistics& difference);
 
 std::string TableMarkdown(const AblationPlan& plan,
                           const std::vector<RunResult>& runs);

@@ -15,12 +15,12 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 TEST(Statistics, MeanAndSpread) {
-  const Sample sample = SampleOf({2, 4, kNone, 4, 4, 5, 5, 7, 9});
+  const SampleStatistics sample = StatisticsOf({2, 4, kNone, 4, 4, 5, 5, 7, 9});
   EXPECT_EQ(sample.n, 8);
   EXPECT_DOUBLE_EQ(sample.mean, 5);
   EXPECT_DOUBLE_EQ(sample.spread, std::sqrt(32.0 / 7));
-  EXPECT_TRUE(std::isnan(SampleOf({}).mean));
-  EXPECT_TRUE(std::isnan(SampleOf({1}).spread));
+  EXPECT_TRUE(std::isnan(StatisticsOf({}).mean));
+  EXPECT_TRUE(std::isnan(StatisticsOf({1}).spread));
 }
 
 // Scans differ by much more than the variants do: their own effect must cancel
@@ -36,16 +36,16 @@ TEST(Statistics, PairingCancelsTheScan) {
   }
   values[3] = kNone;     // an odd one
   reference[4] = kNone;  // an even one
-  const Sample difference = PairedDifference(values, reference);
+  const SampleStatistics difference = PairedDifference(values, reference);
   EXPECT_EQ(difference.n, 18);
   EXPECT_NEAR(difference.mean, -0.25, 1e-12);
   EXPECT_NEAR(difference.spread, 0.125 * std::sqrt(18.0 / 17), 1e-12);
-  EXPECT_GT(SampleOf(values).spread, 100);
+  EXPECT_GT(StatisticsOf(values).spread, 100);
 }
 
 TEST(Statistics, AgainstItselfNothingDiffers) {
   const std::vector<double> values = {3.1, 2.7, kNone, 9};
-  const Sample difference = PairedDifference(values, values);
+  const SampleStatistics difference = PairedDifference(values, values);
   EXPECT_EQ(difference.n, 3);
   EXPECT_EQ(difference.mean, 0);
   EXPECT_EQ(difference.spread, 0);
