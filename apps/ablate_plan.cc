@@ -175,7 +175,8 @@ class PlanMaker {
     }
     if (flag == "schedule") {
       try {
-        ParseSchedule(value);
+        // What is possible depends on --joint, checked with the whole variant.
+        ParseSchedule(value, JointMethod::kSchur);
       } catch (const OptionsError& e) {
         return e.what();
       }

@@ -5,6 +5,7 @@
 #include <glog/logging.h>
 
 #include "problems/formulation.h"
+#include "problems/joint_method.h"
 #include "util/errors.h"
 
 namespace facet {
@@ -15,11 +16,19 @@ std::vector<FlagChoices> MakeTable() {
   std::vector<FlagChoices> table = {{"schedule", {}, true}};
   for (const FormulationAxis& axis : FormulationAxes()) {
     FlagChoices row = {axis.name, {}, true};
-    for (const FormulationValue& value : axis.values) row.values.push_back(value.name);
+    for (const FormulationValue& value : axis.values)
+      row.values.push_back(value.name);
     table.push_back(row);
   }
+  FlagChoices joint = {"joint", {}, true};
+  for (const JointMethod method : AllJointMethods()) {
+    joint.values.push_back(JointMethodName(method));
+  }
+  table.push_back(joint);
   const std::vector<FlagChoices> others = {
       {"loss_scale", {}, true},
+      {"linear_solver", {"cholesky", "cgnr"}, true},
+      {"levels", {}, true},
       {"gauge_strength", {}, true},
       {"lambda2", {}, true},
       {"smoothing", {}, true},

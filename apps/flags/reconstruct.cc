@@ -162,7 +162,21 @@ DEFINE_string(schedule,
               PhotometricOptions().schedule,
               "what is solved when: N x [phase; phase], a phase is a sum of C "
               "(colours), Phi (planes), T (poses), F (warps); the paper is "
-              "10x[C; Phi; T+F]");
+              "10x[C; Phi; T+F]. Options: 4x[C+T{iterations=3, joint=exact}; "
+              "T+F{decoupled}]{stop=1e-3}");
+DEFINE_string(joint,
+              facet::JointMethodName(SolverConfig().joint_method),
+              "how colours are solved jointly with other blocks (C+T, "
+              "C+Phi+T): consensus, frame_tensors, exact, frozen (colours "
+              "eliminated, by Hessian); schur, inner (colours kept: the oracle "
+              "on small problems)");
+DEFINE_string(linear_solver,
+              "cholesky",
+              "of joint solves with eliminated colours: cholesky or cgnr");
+DEFINE_int32(levels,
+             PhotometricOptions().levels,
+             "coarse-to-fine: image pyramid levels, each half as large as the "
+             "next with twice its texel stride; warps only on the finest");
 DEFINE_double(stop_decrease,
               PhotometricOptions().stop.relative_decrease,
               "a group of rounds ends when two rounds lower the energy by a "
@@ -282,6 +296,7 @@ void CheckNumbers() {
       {"max_angle_deg", 0, 90, true, true},
       {"image_margin", 0},
       {"min_views", 2},  // one view has no residual
+      {"levels", 1, 6},
       {"stop_decrease", 0},
       {"smoothing", 0, 100},
       {"warp_columns", 2, 100},
@@ -363,6 +378,7 @@ void SolverOptions(ReconstructOptions* o) {
   PhotometricOptions& p = o->photometric;
   p.schedule = FLAGS_schedule;
   p.solver.trace_states = FLAGS_trace_states;
+  p.levels = FLAGS_levels;
   p.stop.relative_decrease = FLAGS_stop_decrease;
   p.smoothing_sigma_px = FLAGS_smoothing;
   p.warp_columns = FLAGS_warp_columns;
@@ -388,6 +404,11 @@ void SolverOptions(ReconstructOptions* o) {
   f.channels = static_cast<Channels>(Choose("channels", FLAGS_channels));
   f.evaluation =
       static_cast<Evaluation>(Choose("evaluation", FLAGS_evaluation));
+  p.solver.joint_method = AllJointMethods()[Choose("joint", FLAGS_joint)];
+  p.solver.joint_linear_solver =
+      Choose("linear_solver", FLAGS_linear_solver) == 0
+          ? JointLinearSolver::kCholesky
+          : JointLinearSolver::kCgnr;
   p.solver.max_pose_iterations = FLAGS_pose_iterations;
   p.solver.max_plane_iterations = FLAGS_plane_iterations;
   p.solver.max_joint_iterations = FLAGS_joint_iterations;

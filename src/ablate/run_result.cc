@@ -53,7 +53,8 @@ std::vector<TracePoint> ReadTrace(const std::string& path) {
   std::map<std::string, size_t> column;
   const std::vector<std::string> heads = SplitCells(line);
   for (size_t i = 0; i < heads.size(); ++i) column[heads[i]] = i;
-  for (const char* needed : {"round",
+  for (const char* needed : {"level",
+                             "round",
                              "phase",
                              "E_c",
                              "E_p_m2",
@@ -81,9 +82,7 @@ std::vector<TracePoint> ReadTrace(const std::string& path) {
     const double problems = number("problems");
     if (problems > 0) iterations += number("iterations") / problems;
     TracePoint point;
-    if (column.count("level") > 0) {
-      point.level = static_cast<int>(number("level"));
-    }
+    point.level = static_cast<int>(number("level"));
     point.ate_mm = point.plane_angle_deg = point.plane_offset_mm = kNone;
     point.round = static_cast<int>(number("round"));
     point.phase = cells[column["phase"]];

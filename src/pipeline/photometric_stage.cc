@@ -18,19 +18,35 @@ namespace facet {
 namespace {
 
 ImageView<float> ViewOf(const cv::Mat& image) {
-  return {image.ptr<float>(), image.cols, image.rows,
+  return {image.ptr<float>(),
+          image.cols,
+          image.rows,
           static_cast<ptrdiff_t>(image.step1())};
 }
 
-std::string PhaseLine(int round, const std::string& phase,
-                      const EnergyTerms& e, double lambda1, double lambda2,
-                      const char* mark, double wall_s) {
+std::string PhaseLine(const std::string& round,
+                      const std::string& phase,
+                      const EnergyTerms& e,
+                      double lambda1,
+                      double lambda2,
+                      const char* mark,
+                      double wall_s) {
   char line[200];
-  std::snprintf(line, sizeof(line),
-                "  %5d  %-7s %12.4f %12.4f %12.4f %12.4f %9.4f %10.4f %9.3f  %-8s "
-                "%7.1f",
-                round, phase.c_str(), e.e_c, lambda1 * e.e_p,
-                lambda2 * e.e_s, e.e_tex, e.e_prior, e.e_depth, e.rms_grey, mark, wall_s);
+  std::snprintf(line,
+                sizeof(line),
+                "  %5s  %-7s %12.4f %12.4f %12.4f %12.4f %9.4f %10.4f %9.3f  "
+                "%-8s %7.1f",
+                round.c_str(),
+                phase.c_str(),
+                e.e_c,
+                lambda1 * e.e_p,
+                lambda2 * e.e_s,
+                e.e_tex,
+                e.e_prior,
+                e.e_depth,
+                e.rms_grey,
+                mark,
+                wall_s);
   return line;
 }
 
@@ -45,10 +61,111 @@ struct Sampled {
 // coarse sample, whose count scales with 1 / stride^2.
 int ChooseStride(const std::function<Sampled(int)>& sample, size_t limit) {
   constexpr int kProbe = 8;
-  const double dense = static_cast<double>(sample(kProbe).observations.size()) *
-                       kProbe * kProbe;
-  const double stride = std::ceil(std::sqrt(dense / static_cast<double>(limit)));
+  const double dense =
+      static_cast<double>(sample(kProbe).observations.size()) * kProbe * kProbe;
+  const double stride =
+      std::ceil(std::sqrt(dense / static_cast<double>(limit)));
   return std::clamp(static_cast<int>(stride), 1, 32);
+}
+
+struct StageInputs {
+  const PhotometricOptions& options;
+  const RgbdSequence& sequence;
+  const std::vector<Pose>& cam_from_world;
+  const std::vector<Eigen::Vector3d>& anchors;
+  const std::vector<DepthMoment>& depth_moments;
+};
+
+// The problem of a pyramid level, with the images that it reads.
+class Level {
+ public:
+  // `images` and `sampled` are of that level.
+  Level(const StageInputs& inputs,
+        const KeyframeImages& images,
+        int level,
+        Sampled sampled)
+      : images_(images) {
+    const PhotometricOptions& options = inputs.options;
+    problem_.formulation = options.formulation;
+    problem_.camera = inputs.sequence.calibration().color.Level(level);
+    problem_.lattice = {options.warp_columns,
+                        options.warp_rows,
+                        problem_.camera.width,
+                        problem_.camera.height};
+    for (size_t k = 0; k < images_.size(); ++k) {
+      problem_.images.push_back(ViewOf(images_.smooth[k]));
+      problem_.raw_images.push_back(ViewOf(images_.luma[k]));
+    }
+    if (options.formulation.channels == Channels::kRgb) {
+      AddChannels(options.smoothing_sigma_px);
+    }
+    problem_.texels = std::move(sampled.texels);
+    problem_.observations = std::move(sampled.observations);
+    problem_.tiles = std::move(sampled.tiles);
+    problem_.anchors = inputs.anchors;
+    problem_.initial_cam_from_world = inputs.cam_from_world;
+    problem_.depth_moments = inputs.depth_moments;
+    FinishTextureProblem(&problem_);
+  }
+
+  const TextureProblem& problem() const { return problem_; }
+
+ private:
+  void AddChannels(double sigma) {
+    channels_.resize(images_.size());
+    ParallelFor(0, channels_.size(), [&](size_t k) {
+      channels_[k] = SmoothChannels(images_.rgb[k], sigma);
+    });
+    problem_.more_images.resize(2);
+    for (size_t k = 0; k < channels_.size(); ++k) {
+      problem_.images[k] = ViewOf(channels_[k][0]);
+      problem_.more_images[0].push_back(ViewOf(channels_[k][1]));
+      problem_.more_images[1].push_back(ViewOf(channels_[k][2]));
+    }
+  }
+
+  KeyframeImages images_;
+  std::vector<std::array<cv::Mat, 3>> channels_;
+  TextureProblem problem_;
+};
+
+// Runs the schedule on poses and planes of `state` (colours are those of the
+// problem) and appends to the trace.
+void RunLevel(const TextureProblem& problem,
+              const EnergyWeights& weights,
+              const PhotometricOptions& options,
+              const Schedule& schedule,
+              int level,
+              const std::function<void(const std::string&)>& print,
+              ReconState* state,
+              Trace* trace) {
+  state->colors.assign(problem.NumChannels() * problem.texels.size(), 0.0f);
+  SolveColors(problem, state);
+  const double wall_s = trace->rows.empty() ? 0 : trace->rows.back().wall_s;
+  const double cpu_s = trace->rows.empty() ? 0 : trace->rows.back().cpu_s;
+  const std::string prefix = level > 0 ? std::to_string(level) + ":" : "";
+  Trace part = RunSchedule(
+      problem,
+      weights,
+      options.solver,
+      schedule,
+      options.stop,
+      [&](const TraceRow& row) {
+        print(PhaseLine(prefix + std::to_string(row.round),
+                        row.phase.blocks,
+                        row.phase.after,
+                        weights.lambda1,
+                        weights.lambda2,
+                        row.phase.accepted ? "accepted" : "undone",
+                        wall_s + row.wall_s));
+      },
+      state);
+  for (TraceRow& row : part.rows) {
+    row.level = level;
+    row.wall_s += wall_s;
+    row.cpu_s += cpu_s;
+    trace->rows.push_back(row);
+  }
 }
 
 void CountFrames(const TextureProblem& problem, PhotometricResult* result) {
@@ -57,7 +174,8 @@ void CountFrames(const TextureProblem& problem, PhotometricResult* result) {
   std::vector<int> last(problem.NumPlanes(), -1);
   for (int k = 0; k < problem.NumKeyframes(); ++k) {
     for (size_t i = problem.observations.begin[k];
-         i < problem.observations.begin[k + 1]; ++i) {
+         i < problem.observations.begin[k + 1];
+         ++i) {
       const int plane = problem.texels.plane[problem.observations.texel[i]];
       if (last[plane] == k) continue;
       last[plane] = k;
@@ -75,16 +193,26 @@ void CheckObserved(const Observations& observations,
   if (observations.size() > 0) return;
   char text[700];
   std::snprintf(
-      text, sizeof(text),
+      text,
+      sizeof(text),
       "no keyframe sees the mesh: of %zu candidate observations of %d "
       "keyframes %zu are behind or too far, %zu outside the image, %zu "
       "grazing or from behind, %zu without depth, %zu at depth edges, %zu "
-      "contradict the sensor depth, %zu at edges of the mesh, %zu are occluded, "
+      "contradict the sensor depth, %zu at edges of the mesh, %zu are "
+      "occluded, "
       "%zu seen too rarely; run "
       "facet-check-input to find the convention that fits, or lower "
       "--keyframe_window where texels are seen too rarely",
-      c.candidates, num_keyframes, c.behind_or_far, c.outside_image, c.grazing,
-      c.depth_missing, c.depth_edge, c.depth_disagrees, c.mesh_edge, c.occluded,
+      c.candidates,
+      num_keyframes,
+      c.behind_or_far,
+      c.outside_image,
+      c.grazing,
+      c.depth_missing,
+      c.depth_edge,
+      c.depth_disagrees,
+      c.mesh_edge,
+      c.occluded,
       c.too_few_views);
   throw UnsolvableError(text);
 }
@@ -98,8 +226,9 @@ void StoreResult(const TextureProblem& problem,
   for (int j = 0; j < problem.NumPlanes(); ++j) {
     result->planes.push_back(state.PlaneAt(j, problem.anchors[j]));
   }
-  if (std::any_of(state.warps.begin(), state.warps.end(),
-                  [](double f) { return f != 0; })) {
+  if (std::any_of(state.warps.begin(), state.warps.end(), [](double f) {
+        return f != 0;
+      })) {
     result->warps = state.warps;
   }
   CountFrames(problem, result);
@@ -127,13 +256,18 @@ PhotometricResult RunPhotometricStage(
   }
   const auto sample = [&](int stride) {
     Sampled s;
-    s.texels = SampleTexels(mesh, partition, atlas,
-                            {stride, options.edge_margin_m});
-    s.tiles = SortTexelsIntoTiles(planes, anchors, options.tile_texels,
-                                  &s.texels);
-    s.observations =
-        ComputeObservations(s.texels, planes, scene, sequence, keyframes,
-                            cam_from_world, visibility, &s.counts);
+    s.texels =
+        SampleTexels(mesh, partition, atlas, {stride, options.edge_margin_m});
+    s.tiles =
+        SortTexelsIntoTiles(planes, anchors, options.tile_texels, &s.texels);
+    s.observations = ComputeObservations(s.texels,
+                                         planes,
+                                         scene,
+                                         sequence,
+                                         keyframes,
+                                         cam_from_world,
+                                         visibility,
+                                         &s.counts);
     CheckObserved(s.observations, s.counts, static_cast<int>(keyframes.size()));
     return s;
   };
@@ -146,43 +280,28 @@ PhotometricResult RunPhotometricStage(
       ObservationFingerprint(sampled.texels, sampled.observations);
   result.visibility = sampled.counts;
 
-  TextureProblem problem;
-  problem.formulation = options.formulation;
-  problem.camera = sequence.calibration().color;
-  problem.lattice = {options.warp_columns, options.warp_rows,
-                     problem.camera.width, problem.camera.height};
-  result.lattice = problem.lattice;
-  for (size_t k = 0; k < keyframes.size(); ++k) {
-    problem.images.push_back(ViewOf(images.smooth[k]));
-    problem.raw_images.push_back(ViewOf(images.luma[k]));
-  }
-  std::vector<std::array<cv::Mat, 3>> channels;
-  if (options.formulation.channels == Channels::kRgb) {
-    channels.resize(keyframes.size());
-    ParallelFor(0, channels.size(), [&](size_t k) {
-      channels[k] = SmoothChannels(images.rgb[k], options.smoothing_sigma_px);
-    });
-    problem.more_images.resize(2);
-    for (size_t k = 0; k < channels.size(); ++k) {
-      problem.images[k] = ViewOf(channels[k][0]);
-      problem.more_images[0].push_back(ViewOf(channels[k][1]));
-      problem.more_images[1].push_back(ViewOf(channels[k][2]));
-    }
-  }
-  problem.texels = std::move(sampled.texels);
-  problem.observations = std::move(sampled.observations);
-  problem.tiles = std::move(sampled.tiles);
-  problem.anchors = anchors;
-  problem.initial_cam_from_world = cam_from_world;
+  const Schedule schedule =
+      ParseSchedule(options.schedule, options.solver.joint_method);
+  CheckObservationLimit(
+      options.formulation,
+      PhasesOf(schedule, options.solver.joint_method),
+      sampled.observations.size() *
+          (options.formulation.channels == Channels::kRgb ? 3 : 1));
+  std::vector<DepthMoment> depth_moments;
   if (options.weights.depth_weight > 0) {
-    problem.depth_moments =
-        ComputeDepthMoments(partition, planes, scene, sequence, keyframes,
-                            cam_from_world, DepthMomentOptions());
+    depth_moments = ComputeDepthMoments(partition,
+                                        planes,
+                                        scene,
+                                        sequence,
+                                        keyframes,
+                                        cam_from_world,
+                                        DepthMomentOptions());
   }
-  CheckObservationLimit(problem.formulation,
-                        problem.observations.size() * problem.NumChannels());
-  FinishTextureProblem(&problem);
-
+  const StageInputs inputs = {
+      options, sequence, cam_from_world, anchors, depth_moments};
+  const Level finest(inputs, images, 0, std::move(sampled));
+  const TextureProblem& problem = finest.problem();
+  result.lattice = problem.lattice;
   ReconState state = InitialState(problem, planes);
   EnergyWeights weights = options.weights;
   weights.texel_weight = result.stride * result.stride;
@@ -190,21 +309,30 @@ PhotometricResult RunPhotometricStage(
   result.lambda1 = weights.lambda1;
   weights.prior.scale = InitialPriorScale(problem, weights, state);
 
-  print("  round  phase            E_c   lambda1 E_p   lambda2 E_s        E_tex"
-        "   E_prior    E_depth  rms grey  result    wall s");
+  print(
+      "  round  phase            E_c   lambda1 E_p   lambda2 E_s        E_tex"
+      "   E_prior    E_depth  rms grey  result    wall s");
   result.initial = EvaluateEnergy(problem, weights, state, true);
-  print(PhaseLine(0, "start", result.initial, weights.lambda1, weights.lambda2,
-                  "", 0));
-  result.trace = RunSchedule(
-      problem, weights, options.solver, ParseSchedule(options.schedule),
-      options.stop,
-      [&](const TraceRow& row) {
-        print(PhaseLine(row.round, row.phase.blocks, row.phase.after,
-                        weights.lambda1, weights.lambda2,
-                        row.phase.accepted ? "accepted" : "undone",
-                        row.wall_s));
-      },
-      &state);
+  print(PhaseLine(
+      "0", "start", result.initial, weights.lambda1, weights.lambda2, "", 0));
+  result.trace.initial = result.initial;
+  for (int level = options.levels - 1; level > 0; --level) {
+    const KeyframeImages reduced =
+        PyramidLevel(images, level, options.smoothing_sigma_px);
+    const Level coarse(inputs, reduced, level, sample(result.stride << level));
+    EnergyWeights coarse_weights = weights;
+    coarse_weights.texel_weight *= 1 << (2 * level);
+    RunLevel(coarse.problem(),
+             coarse_weights,
+             options,
+             WithoutWarps(schedule),
+             level,
+             print,
+             &state,
+             &result.trace);
+  }
+  RunLevel(
+      problem, weights, options, schedule, 0, print, &state, &result.trace);
   // Poses and planes moved after the last colour step.
   SolveColors(problem, &state);
   result.final_terms = EvaluateEnergy(problem, weights, state, true);

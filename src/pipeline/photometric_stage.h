@@ -31,6 +31,10 @@ struct PhotometricOptions {
   int tile_texels = 16;  // side of the square tiles (SortTexelsIntoTiles)
   double smoothing_sigma_px = 0.8;        // Gaussian on the luma; paper: none
   int warp_columns = 20, warp_rows = 16;  // control vertices (paper)
+  // Coarse-to-fine: pyramid levels with images halved and the stride doubled a
+  // level (method, Sec. 10.3 (i)). Coarse levels run the schedule without
+  // warps, on observations of their own; 1 = none.
+  int levels = 1;
   // Joint solves of poses and colours first, without warp, then the warps: the
   // measured best on real scans. The paper: 10x[C; Phi; T+F].
   std::string schedule = "4x[Phi; C+T]; 5x[C; Phi; F]";

@@ -402,9 +402,10 @@ class Run {
 }  // namespace
 
 void CheckOptions(const ReconstructOptions& options) {
-  const Schedule schedule = ParseSchedule(options.photometric.schedule);
-  CheckSchedule(schedule);
-  CheckFormulation(options.photometric.formulation, PhasesOf(schedule));
+  const PhotometricOptions& p = options.photometric;
+  const JointMethod joint = p.solver.joint_method;
+  CheckFormulation(p.formulation,
+                   PhasesOf(ParseSchedule(p.schedule, joint), joint));
 }
 
 json Reconstruct(const ReconstructOptions& options) {

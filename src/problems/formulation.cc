@@ -86,36 +86,45 @@ const char* AxisDefault(const std::string& name) {
 }
 
 void CheckFormulation(const Formulation& formulation,
-                      const std::vector<unsigned>& phases) {
-  for (const unsigned blocks : phases) {
-    if (IsJoint(blocks) && (blocks & kPlanes) &&
-        formulation.plane == PlaneKind::kRaw4) {
+                      const std::vector<SolvedSet>& phases) {
+  for (const SolvedSet& phase : phases) {
+    if (!IsJoint(phase.blocks) || HasExplicitColors(phase.joint)) continue;
+    const std::string name = BlockSetName(phase.blocks);
+    if ((phase.blocks & kPlanes) && formulation.plane == PlaneKind::kRaw4) {
       throw OptionsError(
-          "--plane=raw4 cannot be solved in the phase " + BlockSetName(blocks) +
-          ": its Hessian knows normalised planes only; use another --plane, or "
-          "a schedule with phases Phi");
+          "--plane=raw4 cannot be solved in the phase " + name +
+          ": its Hessian knows normalised planes only; use another --plane, a "
+          "schedule with phases Phi, or --joint=schur");
     }
-    if (IsJoint(blocks) && formulation.evaluation == Evaluation::kReference) {
+    if (formulation.evaluation == Evaluation::kReference) {
       throw OptionsError(
-          "--evaluation=reference cannot be solved in the phase " +
-          BlockSetName(blocks) +
-          ": the joint solve has no residual blocks; use a schedule of "
-          "separate phases, as 10x[C; Phi; T+F]");
+          "--evaluation=reference cannot be solved in the phase " + name +
+          ": its joint method has no residual blocks; use --joint=schur, or a "
+          "schedule of separate phases, as 10x[C; Phi; T+F]");
     }
   }
 }
 
 void CheckObservationLimit(const Formulation& formulation,
+                           const std::vector<SolvedSet>& phases,
                            size_t observations) {
-  if (formulation.evaluation != Evaluation::kReference ||
-      observations <= kMaxReferenceObservations) {
-    return;
+  if (observations <= kMaxReferenceObservations) return;
+  std::string what, instead;
+  for (const SolvedSet& phase : phases) {
+    if (!IsJoint(phase.blocks) || !HasExplicitColors(phase.joint)) continue;
+    what = "--joint=" + JointMethodName(phase.joint);
+    instead = "--joint=consensus";
   }
+  if (formulation.evaluation == Evaluation::kReference) {
+    what = "--evaluation=reference";
+    instead = "--evaluation=compressed";
+  }
+  if (what.empty()) return;
   throw OptionsError(
-      "--evaluation=reference builds a residual block for each of the " +
+      what + " builds a residual block for each of the " +
       std::to_string(observations) + " observations, and is limited to " +
       std::to_string(kMaxReferenceObservations) +
-      "; raise --texel_stride or use --evaluation=compressed");
+      "; raise --texel_stride, lower --max_observations or use " + instead);
 }
 
 }  // namespace facet

@@ -14,6 +14,7 @@
 #include "costs/photo_kernel.h"
 #include "costs/plane_manifold.h"
 #include "costs/se3_manifold.h"
+#include "problems/joint_method.h"
 
 namespace facet {
 
@@ -31,7 +32,8 @@ enum class Evaluation {
   kReference,   // an autodiff block an observation, in double
 };
 
-// Residual blocks that kReference may build: each takes about 700 bytes.
+// Residual blocks, one an observation, that kReference and the joint methods
+// with explicit colours may build: each takes about 700 bytes.
 inline constexpr size_t kMaxReferenceObservations = 3000000;
 
 // One choice on each axis but the gauge, whose parts belong to EnergyWeights
@@ -66,12 +68,21 @@ const std::vector<FormulationAxis>& FormulationAxes();
 const char* AxisHelp(const std::string& name);
 const char* AxisDefault(const std::string& name);
 
+// What a phase of a schedule solves: a BlockSet (problems/solve_blocks.h), and
+// by which method if it is joint.
+struct SolvedSet {
+  unsigned blocks = 0;
+  JointMethod joint = JointMethod::kConsensus;
+};
+
 // Throws OptionsError with the reason if the formulation cannot be solved by
-// phases that free these sets of blocks (BlockSet of problems/solve_blocks.h).
+// these phases.
 void CheckFormulation(const Formulation& formulation,
-                      const std::vector<unsigned>& phases);
+                      const std::vector<SolvedSet>& phases);
 
 // The same for the number of observations, known when visibility is.
-void CheckObservationLimit(const Formulation& formulation, size_t observations);
+void CheckObservationLimit(const Formulation& formulation,
+                           const std::vector<SolvedSet>& phases,
+                           size_t observations);
 
 }  // namespace facet

@@ -3,6 +3,7 @@
 #include "problems/gauge.h"
 
 #include <Eigen/Cholesky>
+#include <cmath>
 
 #include "costs/se3_manifold.h"
 #include "geometry/common_motion.h"
@@ -119,6 +120,21 @@ class CommonMotionCost : public ceres::CostFunction {
 ceres::CostFunction* CreateCommonMotionCost(
     const std::vector<Pose>& initial_cam_from_world, double weight) {
   return new CommonMotionCost(initial_cam_from_world, weight);
+}
+
+void AddCommonMotionCost(const TextureProblem& problem,
+                         double e_c,
+                         ReconState* state,
+                         ceres::Problem* ceres_problem) {
+  std::vector<double*> parameters;
+  for (int k = 0; k < problem.NumKeyframes(); ++k) {
+    parameters.push_back(state->poses.data() + kPoseSize * k);
+  }
+  ceres_problem->AddResidualBlock(
+      CreateCommonMotionCost(problem.initial_cam_from_world,
+                             1e3 * std::sqrt(e_c)),
+      nullptr,
+      parameters);
 }
 
 Vector6d MeanMotion(const std::vector<Pose>& initial_cam_from_world,

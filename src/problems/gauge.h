@@ -8,6 +8,7 @@
 #pragma once
 
 #include <ceres/cost_function.h>
+#include <ceres/problem.h>
 
 #include "problems/texture_problem.h"
 
@@ -35,5 +36,11 @@ void RemoveCommonMotion(const TextureProblem& problem, ReconState* state);
 //   Parameters  all poses cam_from_world (costs/se3_manifold.h)  7 each
 ceres::CostFunction* CreateCommonMotionCost(
     const std::vector<Pose>& initial_cam_from_world, double weight);
+
+// Adds it for the poses of `state`, so stiff that one millimetre costs `e_c`.
+void AddCommonMotionCost(const TextureProblem& problem,
+                         double e_c,
+                         ReconState* state,
+                         ceres::Problem* ceres_problem);
 
 }  // namespace facet

@@ -2,31 +2,16 @@
 // SPDX-License-Identifier: MIT
 #include "problems/joint_pass.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
 #include "costs/plane_manifold.h"
+#include "problems/joint_rows.h"
 #include "problems/tile_samples.h"
 #include "util/parallel_for.h"
 
 namespace facet {
 namespace {
-
-// A keyframe's pose in double, world coordinates relative to the origin.
-struct FramePose {
-  Eigen::Matrix3d r;
-  Eigen::Vector3d t, center;
-};
-
-// In-plane axes e1, e2 with n: an orthonormal frame.
-struct PlaneFrame {
-  Eigen::Vector3d n, e1, e2;
-  explicit PlaneFrame(const double* plane)
-      : n(Eigen::Map<const Eigen::Vector3d>(plane).normalized()),
-        e1(n.unitOrthogonal()),
-        e2(n.cross(e1)) {}
-};
 
 struct SegmentGradient {
   Vector6d pose = Vector6d::Zero();
@@ -36,7 +21,6 @@ struct SegmentGradient {
 // B_i at the point q: the point seen along the ray moves on the plane by
 // E^T (I - d n^T / (n.d)) dq, d the viewing direction.
 TileView ViewAt(const Eigen::Vector3d& q,
-                const Eigen::Vector3d& q_from_anchor,
                 const PlaneFrame& frame,
                 const FramePose& pose) {
   const Eigen::Vector3d y = pose.r * q + pose.t;
@@ -50,50 +34,67 @@ TileView ViewAt(const Eigen::Vector3d& q,
       axes - axes * d * frame.n.transpose() / cosine;
   Eigen::Matrix<double, 3, 6> dy;
   dy << -Skew(y), Eigen::Matrix3d::Identity();
-  Eigen::Vector4d ds;
-  ds << q_from_anchor, 1.0;
   TileView view;
   view.pose_shift = (along_ray * pose.r.transpose() * dy).cast<float>();
   // dq = -n ds; E^T n = 0.
-  view.plane_shift =
-      (axes * d / cosine * ds.transpose()).cast<float>();
+  view.plane_shift = (axes * d / cosine).cast<float>();
   return view;
 }
 
-// T from the mean gradients of the tile's texels and the views' own ones; with a
-// robust loss both weighted with rho'.
-Eigen::Matrix2d ConsensusTensor(const TextureProblem& problem,
-                                const TexelTile& tile,
-                                const TileSamples& samples,
-                                double own_share) {
-  const size_t num_texels = tile.texel_end - tile.texel_begin;
-  std::vector<double> views(num_texels);
-  for (size_t i = 0; i < num_texels; ++i) {
-    views[i] = problem.views[tile.texel_begin + i];
-  }
-  if (!samples.weight.empty()) {
-    std::fill(views.begin(), views.end(), 0.0);
-    ForEachSample(problem, tile, samples, [&](size_t, size_t texel, size_t i) {
-      views[texel] += samples.weight[i];
-    });
-  }
-  std::vector<Eigen::Vector2d> mean(num_texels, Eigen::Vector2d::Zero());
-  Eigen::Matrix2d tensor = Eigen::Matrix2d::Zero();
+// Adds `weight` times T(p) of every texel as (11, 12, 22), from the mean
+// gradient and the views' own ones; with a robust loss both weighted with rho'.
+void AddTexelTensors(const TextureProblem& problem,
+                     const TexelTile& tile,
+                     const TileSamples& samples,
+                     double own_share,
+                     double weight,
+                     std::vector<Eigen::Vector3d>* tensors) {
+  const size_t n = tile.texel_end - tile.texel_begin;
+  const auto product = [](double g1, double g2) {
+    return Eigen::Vector3d(g1 * g1, g1 * g2, g2 * g2);
+  };
+  std::vector<Eigen::Vector2d> mean(n, Eigen::Vector2d::Zero());
+  std::vector<Eigen::Vector3d> own(n, Eigen::Vector3d::Zero());
+  std::vector<double> views(n, 0.0);
   const float* weights =
       samples.weight.empty() ? nullptr : samples.weight.data();
   ForEachSample(problem, tile, samples, [&](size_t, size_t texel, size_t i) {
-    const double weight = weights ? weights[i] : 1.0;
-    if (weight == 0) return;
-    const Eigen::Vector2d g(samples.g1[i], samples.g2[i]);
-    mean[texel] += weight * g;
-    tensor += own_share * weight / views[texel] * g * g.transpose();
+    const double w = weights ? weights[i] : 1.0;
+    if (w == 0) return;
+    const double g1 = samples.g1[i], g2 = samples.g2[i];
+    mean[texel] += w * Eigen::Vector2d(g1, g2);
+    own[texel] += w * product(g1, g2);
+    views[texel] += w;
   });
-  for (size_t i = 0; i < num_texels; ++i) {
+  for (size_t i = 0; i < n; ++i) {
     if (views[i] == 0) continue;
     const Eigen::Vector2d g = mean[i] / views[i];
-    tensor += (1 - own_share) * g * g.transpose();
+    (*tensors)[i] += weight * (own_share / views[i] * own[i] +
+                               (1 - own_share) * product(g.x(), g.y()));
   }
-  return tensor;
+}
+
+TileTensor SumTensors(const TextureProblem& problem,
+                      const std::vector<PhotoTexel>& points,
+                      const TexelTile& tile,
+                      const PlaneFrame& frame,
+                      const std::vector<Eigen::Vector3d>& tensors) {
+  const Eigen::Vector3d anchor = problem.anchors[tile.plane] - problem.origin;
+  TileTensor sum;
+  sum.s11.setZero();
+  sum.s12.setZero();
+  sum.s22.setZero();
+  for (size_t i = 0; i < tensors.size(); ++i) {
+    const PhotoTexel& point = points[tile.texel_begin + i];
+    const Eigen::Vector3d arm =
+        Eigen::Vector3d(point.x, point.y, point.z) - anchor;
+    const Eigen::Vector3d m(frame.e1.dot(arm), frame.e2.dot(arm), 1.0);
+    const Eigen::Matrix3d mm = m * m.transpose();
+    sum.s11 += tensors[i][0] * mm;
+    sum.s12 += tensors[i][1] * mm;
+    sum.s22 += tensors[i][2] * mm;
+  }
+  return sum;
 }
 
 // Exact gradient of one view of a tile, summed over its samples.
@@ -109,8 +110,8 @@ SegmentGradient GradientOf(const TextureProblem& problem,
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   // sum r G
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();  // sum r q x G
   SegmentGradient gradient;
-  const float* weights = samples.weight.empty() ? nullptr
-                                                : samples.weight.data() + offset;
+  const float* weights =
+      samples.weight.empty() ? nullptr : samples.weight.data() + offset;
   for (size_t i = segment.begin; i < segment.end; ++i) {
     const uint32_t id = problem.observations.texel[i];
     const size_t k = offset + i - segment.begin;
@@ -119,8 +120,7 @@ SegmentGradient GradientOf(const TextureProblem& problem,
     const double weight = weights ? weights[i - segment.begin] : 1.0;
     if (weight == 0) continue;
     const double g1 = samples.g1[k], g2 = samples.g2[k];
-    const double gn =
-        -(g1 * d.dot(frame.e1) + g2 * d.dot(frame.e2)) / d.dot(frame.n);
+    const double gn = frame.AlongNormal(g1, g2, d);
     const double r = weight * (static_cast<double>(samples.intensity[k]) -
                                samples.mean[id - tile.texel_begin]);
     const Eigen::Vector3d rg =
@@ -168,6 +168,30 @@ size_t TexelsSeen(const TextureProblem& problem, const TexelTile& tile) {
 
 }  // namespace
 
+Eigen::Matrix2d TileTensor::Sum() const {
+  Eigen::Matrix2d sum;
+  sum << s11(2, 2), s12(2, 2), s12(2, 2), s22(2, 2);
+  return sum;
+}
+
+Eigen::Matrix3d TileTensor::Between(const Eigen::Vector2d& v,
+                                    const Eigen::Vector2d& w) const {
+  return v.x() * w.x() * s11 + (v.x() * w.y() + v.y() * w.x()) * s12 +
+         v.y() * w.y() * s22;
+}
+
+std::vector<FramePose> MakeFramePoses(const TextureProblem& problem,
+                                      const ReconState& state) {
+  std::vector<FramePose> poses(problem.NumKeyframes());
+  for (size_t k = 0; k < poses.size(); ++k) {
+    const Pose pose = state.CamFromWorld(static_cast<int>(k));
+    poses[k].r = pose.RotationMatrix();
+    poses[k].t = pose * problem.origin;
+    poses[k].center = -poses[k].r.transpose() * poses[k].t;
+  }
+  return poses;
+}
+
 JointPass RunJointPass(const TextureProblem& problem,
                        const ReconState& state,
                        bool with_derivatives,
@@ -176,13 +200,7 @@ JointPass RunJointPass(const TextureProblem& problem,
       MakePhotoChannels(problem, state, PointsAt::kPlane);
   const std::vector<PhotoTexel>& points = channels[0].points;
   const double channel_weight = 1.0 / problem.NumChannels();
-  std::vector<FramePose> poses(problem.NumKeyframes());
-  for (size_t k = 0; k < poses.size(); ++k) {
-    const Pose pose = state.CamFromWorld(static_cast<int>(k));
-    poses[k].r = pose.RotationMatrix();
-    poses[k].t = pose * problem.origin;
-    poses[k].center = -poses[k].r.transpose() * poses[k].t;
-  }
+  const std::vector<FramePose> poses = MakeFramePoses(problem, state);
   const size_t num_tiles = problem.tiles.size();
   JointPass pass;
   std::vector<double> squares(num_tiles, 0.0);
@@ -192,6 +210,13 @@ JointPass RunJointPass(const TextureProblem& problem,
     pass.views.resize(problem.segments.size());
     pass.tensors.resize(num_tiles);
     gradients.resize(problem.segments.size());
+    for (int j = 0; j < problem.NumPlanes(); ++j) {
+      const PlaneFrame frame(state.planes.data() + kPlaneSize * j);
+      pass.plane_axes.push_back(Eigen::Matrix<double, 4, 3>::Zero());
+      pass.plane_axes.back().col(0).head<3>() = frame.e1;
+      pass.plane_axes.back().col(1).head<3>() = frame.e2;
+      pass.plane_axes.back()(3, 2) = 1;
+    }
   }
   ParallelFor(0, num_tiles, [&](size_t t) {
     const TexelTile& tile = problem.tiles[t];
@@ -199,45 +224,59 @@ JointPass RunJointPass(const TextureProblem& problem,
     const Eigen::Vector3f e1 = frame.e1.cast<float>();
     const Eigen::Vector3f e2 = frame.e2.cast<float>();
     const Eigen::Vector3d center = TileCenter(tile, points);
-    const Eigen::Vector3d anchor = problem.anchors[tile.plane] - problem.origin;
     const double seen = static_cast<double>(TexelsSeen(problem, tile));
     for (size_t s = tile.segment_begin;
-         with_derivatives && s < tile.segment_end; ++s) {
-      pass.views[s] = ViewAt(center, center - anchor, frame,
-                             poses[problem.segments[s].keyframe]);
+         with_derivatives && s < tile.segment_end;
+         ++s) {
+      pass.views[s] =
+          ViewAt(center, frame, poses[problem.segments[s].keyframe]);
     }
-    Eigen::Matrix2d tensor = Eigen::Matrix2d::Zero();
+    std::vector<Eigen::Vector3d> tensors(
+        with_derivatives ? tile.texel_end - tile.texel_begin : 0,
+        Eigen::Vector3d::Zero());
     TileSamples samples;
     for (const PhotoChannel& channel : channels) {
-      SampleTile(problem, channel.frames, points, tile,
-                 with_derivatives ? e1.data() : nullptr, e2.data(), &samples);
-      squares[t] += channel_weight *
-                    SumLoss(problem, tile, samples, samples.mean.data());
+      SampleTile(problem,
+                 channel.frames,
+                 points,
+                 tile,
+                 with_derivatives ? e1.data() : nullptr,
+                 e2.data(),
+                 &samples);
+      squares[t] +=
+          channel_weight * SumLoss(problem, tile, samples, samples.mean.data());
       if (!with_derivatives) continue;
-      tensor +=
-          channel_weight * ConsensusTensor(problem, tile, samples, own_share);
+      AddTexelTensors(
+          problem, tile, samples, own_share, channel_weight, &tensors);
       for (size_t s = tile.segment_begin; s < tile.segment_end; ++s) {
         const TileSegment& segment = problem.segments[s];
         const size_t offset = samples.offset[s - tile.segment_begin];
         pass.views[s].share += static_cast<float>(
             channel_weight * WeightOf(segment, samples, offset) / seen);
-        const SegmentGradient gradient =
-            GradientOf(problem, points, tile, segment, samples, offset, frame,
-                       poses[segment.keyframe]);
+        const SegmentGradient gradient = GradientOf(problem,
+                                                    points,
+                                                    tile,
+                                                    segment,
+                                                    samples,
+                                                    offset,
+                                                    frame,
+                                                    poses[segment.keyframe]);
         gradients[s].pose += channel_weight * gradient.pose;
         gradients[s].plane += channel_weight * gradient.plane;
       }
     }
     counts[t] = samples.counts;
-    if (!with_derivatives) return;
-    pass.tensors[t] = tensor.cast<float>();
+    if (!with_derivatives || tile.segment_begin == tile.segment_end) return;
+    pass.tensors[t] = SumTensors(problem, points, tile, frame, tensors);
     for (size_t s = tile.segment_begin; s < tile.segment_end; ++s) {
       // All dropped or outliers: keeps the sum of shares above 0.
       pass.views[s].share = std::max(pass.views[s].share, 1e-6f);
     }
   });
+  pass.plane_squares.assign(problem.NumPlanes(), 0.0);
   for (size_t t = 0; t < num_tiles; ++t) {
     pass.squares += squares[t];
+    pass.plane_squares[problem.tiles[t].plane] += squares[t];
     pass.counts += counts[t];
   }
   if (!with_derivatives) return pass;

@@ -38,6 +38,12 @@ class JointEvaluation : public ceres::EvaluationCallback {
       : problem_(problem),
         weights_(weights),
         config_(config),
+        own_share_(config.joint_method == JointMethod::kConsensus
+                       ? config.joint_own_share
+                       : 1.0),
+        common_share_(config.joint_method == JointMethod::kFrozen
+                          ? 0.0
+                          : config.joint_common_share),
         with_planes_(with_planes),
         state_(state) {}
 
@@ -65,9 +71,10 @@ class JointEvaluation : public ceres::EvaluationCallback {
 
   bool use_system() const { return use_system_; }
   const JointSystem& system() const { return system_; }
-  const Eigen::Matrix<double, 4, 3>& basis(size_t plane) const {
-    return basis_[plane];
-  }
+  // Orthonormal: its transpose turns rows over the tangent into ambient rows,
+  // for the manifold of the formulation. (A manifold's own PlusJacobian P would
+  // not do: P^T P = I / 4 for the sphere of Ceres 2.1.)
+  const PlaneBasis& basis(size_t plane) const { return basis_[plane]; }
   const PoseLift& lift(size_t keyframe) const { return lift_[keyframe]; }
 
   double RestResidual() const {
@@ -78,26 +85,34 @@ class JointEvaluation : public ceres::EvaluationCallback {
 
  private:
   void ComputeSystem() {
-    basis_.clear();
-    const AnchoredPlaneManifold manifold;
-    for (int j = 0; with_planes_ && j < problem_.NumPlanes(); ++j) {
-      Eigen::Matrix<double, 4, 3, Eigen::RowMajor> p;
-      manifold.PlusJacobian(state_->planes.data() + kPlaneSize * j, p.data());
-      basis_.push_back(p);
-    }
     lift_.clear();
     for (int k = 0; k < problem_.NumKeyframes(); ++k) {
       lift_.push_back(LeftPoseLift(state_->poses.data() + kPoseSize * k));
     }
-    const JointPass pass =
-        RunJointPass(problem_, *state_, true, config_.joint_own_share);
+    const JointPass pass = RunJointPass(problem_, *state_, true, own_share_);
+    if (with_planes_) basis_ = pass.plane_axes;
+    const double weight = weights_.texel_weight;
+    const double plane_weight = weight * weights_.lambda1;
+    JointHessian hessian =
+        config_.joint_method == JointMethod::kExact
+            ? ExactHessian(problem_, *state_, basis_, weight)
+            : TensorHessian(problem_, pass, basis_, weight, common_share_);
+    LimitPlaneSteps(problem_,
+                    pass,
+                    *state_,
+                    basis_,
+                    weight,
+                    plane_weight,
+                    config_.max_plane_tilt_rad,
+                    config_.max_plane_offset_m,
+                    &hessian);
     system_ = FactorJointSystem(problem_,
                                 pass,
                                 *state_,
+                                std::move(hessian),
                                 basis_,
-                                weights_.texel_weight,
-                                weights_.texel_weight * weights_.lambda1,
-                                config_.joint_common_share);
+                                weight,
+                                plane_weight);
     SetCost(pass.squares);
     has_system_ = true;
   }
@@ -117,12 +132,13 @@ class JointEvaluation : public ceres::EvaluationCallback {
   const TextureProblem& problem_;
   const EnergyWeights& weights_;
   const SolverConfig& config_;
+  double own_share_, common_share_;
   bool with_planes_;
   const ReconState* state_;
   double cost_ = 0, reserve_ = 0;
   bool has_cost_ = false, has_system_ = false, use_system_ = false;
   JointSystem system_;
-  std::vector<Eigen::Matrix<double, 4, 3>> basis_;
+  std::vector<PlaneBasis> basis_;
   std::vector<PoseLift> lift_;
 };
 
@@ -218,23 +234,6 @@ class RestCost : public ceres::SizedCostFunction<1, kPoseSize> {
   const JointEvaluation& evaluation_;
 };
 
-std::vector<int> KeyframesOfPlane(const TextureProblem& problem, int plane) {
-  std::vector<int> keyframes;
-  for (size_t t = problem.plane_tile_begin[plane];
-       t < problem.plane_tile_begin[plane + 1];
-       ++t) {
-    for (size_t s = problem.tiles[t].segment_begin;
-         s < problem.tiles[t].segment_end;
-         ++s) {
-      keyframes.push_back(problem.segments[s].keyframe);
-    }
-  }
-  std::sort(keyframes.begin(), keyframes.end());
-  keyframes.erase(std::unique(keyframes.begin(), keyframes.end()),
-                  keyframes.end());
-  return keyframes;
-}
-
 void AddBlocks(const TextureProblem& problem,
                const EnergyWeights& weights,
                const JointEvaluation& evaluation,
@@ -265,14 +264,8 @@ void AddBlocks(const TextureProblem& problem,
   ceres_problem->AddResidualBlock(
       new RestCost(evaluation), nullptr, pose(num_keyframes - 1));
   if (hold_common_motion) {
-    std::vector<double*> parameters;
-    for (int k = 0; k < num_keyframes; ++k) parameters.push_back(pose(k));
-    // One millimetre of it costs as much as E_c now.
-    ceres_problem->AddResidualBlock(
-        CreateCommonMotionCost(problem.initial_cam_from_world,
-                               1e3 * std::sqrt(evaluation.InitialCost())),
-        nullptr,
-        parameters);
+    AddCommonMotionCost(
+        problem, evaluation.InitialCost(), state, ceres_problem);
   }
   for (int j = 0; with_planes && j < problem.NumPlanes(); ++j) {
     const std::vector<int> keyframes = KeyframesOfPlane(problem, j);
@@ -329,10 +322,16 @@ void SolveJoint(const TextureProblem& problem,
   }
 
   ceres::Solver::Options options;
-  // R is dense in the poses; planes first costs no fill. (CGNR stops far too
-  // early here: soft common modes matter.)
-  options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  // R is dense in the poses; planes first costs no fill.
+  options.linear_solver_type =
+      config.joint_linear_solver == JointLinearSolver::kCgnr
+          ? ceres::CGNR
+          : ceres::SPARSE_NORMAL_CHOLESKY;
   options.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
+  // Conjugate gradients end at iteration k when it added less than eta / k of
+  // the decrease so far. The soft common modes add little to the model's cost
+  // and come last: with Ceres's 0.1 they are left out after two iterations.
+  options.eta = 1e-3;
   options.max_num_iterations = config.max_joint_iterations;
   options.initial_trust_region_radius = memory->joint_radius;
   options.max_trust_region_radius = config.max_joint_radius;
@@ -351,6 +350,8 @@ void SolveJoint(const TextureProblem& problem,
   }
   summary->problems = 1;
   summary->iterations = static_cast<int>(solved.iterations.size());
+  summary->cost_before = 2 * solved.initial_cost - evaluation.reserve();
+  summary->cost_after = 2 * solved.final_cost - evaluation.reserve();
   if (!solved.iterations.empty()) {
     memory->joint_radius =
         std::clamp(solved.iterations.back().trust_region_radius,

@@ -3,119 +3,12 @@
 #include "problems/joint_system.h"
 
 #include <Eigen/Cholesky>
-#include <algorithm>
 
 #include "costs/plane_manifold.h"
 #include "util/parallel_for.h"
 
 namespace facet {
 namespace {
-
-using PlaneBasis = Eigen::Matrix<double, 4, 3>;
-
-// Blocks of H before factoring.
-struct Blocks {
-  Eigen::MatrixXd pose_pose;  // upper triangle
-  std::vector<Eigen::Matrix3d> plane_plane;
-  std::vector<std::vector<int>> plane_keyframes;
-  std::vector<Eigen::Matrix<double, 3, Eigen::Dynamic>> plane_pose;
-};
-
-// For each keyframe the segments that belong to it, as (tile, segment).
-std::vector<std::vector<std::pair<uint32_t, uint32_t>>> SegmentsByFrame(
-    const TextureProblem& problem) {
-  std::vector<std::vector<std::pair<uint32_t, uint32_t>>> by_frame(
-      problem.NumKeyframes());
-  for (size_t t = 0; t < problem.tiles.size(); ++t) {
-    for (size_t s = problem.tiles[t].segment_begin;
-         s < problem.tiles[t].segment_end; ++s) {
-      by_frame[problem.segments[s].keyframe].push_back(
-          {static_cast<uint32_t>(t), static_cast<uint32_t>(s)});
-    }
-  }
-  return by_frame;
-}
-
-// Block row i of the pose part, written by one task alone:
-//   H_ii += c_i B_i' T B_i,  H_ik -= kappa c_i c_k / sum(c) B_i' T B_k.
-void AddPoseRows(const TextureProblem& problem,
-                 const JointPass& pass,
-                 const std::vector<double>& share_sum,
-                 double weight,
-                 double common_share,
-                 Eigen::MatrixXd* h) {
-  const auto by_frame = SegmentsByFrame(problem);
-  ParallelFor(0, by_frame.size(), [&](size_t i) {
-    for (const auto& [t, s] : by_frame[i]) {
-      const TexelTile& tile = problem.tiles[t];
-      const TileView& view = pass.views[s];
-      const Eigen::Matrix<float, 6, 2> bt =
-          view.pose_shift.transpose() * pass.tensors[t] *
-          static_cast<float>(weight * view.share);
-      h->block<6, 6>(6 * i, 6 * i) += (bt * view.pose_shift).cast<double>();
-      const float scale = static_cast<float>(common_share / share_sum[t]);
-      for (size_t other = s; other < tile.segment_end; ++other) {
-        const TileView& second = pass.views[other];
-        const int k = problem.segments[other].keyframe;
-        h->block<6, 6>(6 * i, 6 * k) -=
-            (bt * (scale * second.share) * second.pose_shift).cast<double>();
-      }
-    }
-  });
-}
-
-// Plane blocks, by plane.
-void AddPlaneBlocks(const TextureProblem& problem,
-                    const JointPass& pass,
-                    const std::vector<double>& share_sum,
-                    const std::vector<PlaneBasis>& basis,
-                    double weight,
-                    double common_share,
-                    Blocks* blocks) {
-  const size_t num_planes = basis.size();
-  blocks->plane_plane.assign(num_planes, Eigen::Matrix3d::Zero());
-  blocks->plane_keyframes.resize(num_planes);
-  blocks->plane_pose.resize(num_planes);
-  ParallelFor(0, num_planes, [&](size_t j) {
-    const size_t first = problem.plane_tile_begin[j];
-    const size_t last = problem.plane_tile_begin[j + 1];
-    std::vector<int>& keyframes = blocks->plane_keyframes[j];
-    for (size_t t = first; t < last; ++t) {
-      for (size_t s = problem.tiles[t].segment_begin;
-           s < problem.tiles[t].segment_end; ++s) {
-        keyframes.push_back(problem.segments[s].keyframe);
-      }
-    }
-    std::sort(keyframes.begin(), keyframes.end());
-    keyframes.erase(std::unique(keyframes.begin(), keyframes.end()),
-                    keyframes.end());
-    auto& pose_part = blocks->plane_pose[j];
-    pose_part.setZero(3, 6 * static_cast<Eigen::Index>(keyframes.size()));
-    for (size_t t = first; t < last; ++t) {
-      const TexelTile& tile = problem.tiles[t];
-      if (tile.segment_begin == tile.segment_end) continue;
-      const Eigen::Matrix2d tensor = weight * pass.tensors[t].cast<double>();
-      Eigen::Matrix<double, 2, 3> sum = Eigen::Matrix<double, 2, 3>::Zero();
-      for (size_t s = tile.segment_begin; s < tile.segment_end; ++s) {
-        sum += pass.views[s].share * pass.views[s].plane_shift.cast<double>() *
-               basis[j];
-      }
-      blocks->plane_plane[j] -=
-          common_share / share_sum[t] * sum.transpose() * tensor * sum;
-      for (size_t s = tile.segment_begin; s < tile.segment_end; ++s) {
-        const TileView& view = pass.views[s];
-        const Eigen::Matrix<double, 2, 3> b =
-            view.plane_shift.cast<double>() * basis[j];
-        blocks->plane_plane[j] += view.share * b.transpose() * tensor * b;
-        const auto where = std::lower_bound(keyframes.begin(), keyframes.end(),
-                                            problem.segments[s].keyframe);
-        pose_part.middleCols<6>(6 * (where - keyframes.begin())) +=
-            view.share * (b - common_share / share_sum[t] * sum).transpose() *
-            tensor * view.pose_shift.cast<double>();
-      }
-    }
-  });
-}
 
 // Relative shift of the diagonal: larger than for plain blocks, because the
 // common part has been subtracted.
@@ -130,7 +23,8 @@ void ShiftDiagonal(Matrix* h) {
 }
 
 // Eliminates the planes: S = H_pp - sum_j X_j' X_j, by block rows.
-void SubtractPlanes(const JointSystem& system, int num_keyframes,
+void SubtractPlanes(const JointSystem& system,
+                    int num_keyframes,
                     Eigen::MatrixXd* s) {
   std::vector<std::vector<std::pair<int, int>>> rows(num_keyframes);
   for (size_t j = 0; j < system.planes.size(); ++j) {
@@ -167,53 +61,62 @@ Eigen::MatrixXd UpperFactor(const Eigen::MatrixXd& upper) {
 
 }  // namespace
 
+void LimitPlaneSteps(const TextureProblem& problem,
+                     const JointPass& pass,
+                     const ReconState& state,
+                     const std::vector<PlaneBasis>& plane_basis,
+                     double weight,
+                     double plane_weight,
+                     double max_tilt_rad,
+                     double max_offset_m,
+                     JointHessian* hessian) {
+  const double tilt = 1 / (4 * max_tilt_rad * max_tilt_rad);
+  const Eigen::Vector4d per_cost(
+      tilt, tilt, tilt, 1 / (4 * max_offset_m * max_offset_m));
+  for (size_t j = 0; j < plane_basis.size(); ++j) {
+    const Eigen::Map<const Eigen::Vector4d> phi(state.planes.data() +
+                                                kPlaneSize * j);
+    const double cost = weight * pass.plane_squares[j] +
+                        plane_weight * phi.dot(problem.moments[j] * phi);
+    hessian->planes[j].plane += plane_basis[j].transpose() *
+                                (cost * per_cost).asDiagonal() * plane_basis[j];
+  }
+}
+
 JointSystem FactorJointSystem(const TextureProblem& problem,
                               const JointPass& pass,
                               const ReconState& state,
+                              JointHessian hessian,
                               const std::vector<PlaneBasis>& plane_basis,
                               double weight,
-                              double plane_weight,
-                              double common_share) {
+                              double plane_weight) {
   const int num_keyframes = problem.NumKeyframes();
-  std::vector<double> share_sum(problem.tiles.size(), 0.0);
-  for (size_t t = 0; t < problem.tiles.size(); ++t) {
-    for (size_t s = problem.tiles[t].segment_begin;
-         s < problem.tiles[t].segment_end; ++s) {
-      share_sum[t] += pass.views[s].share;
-    }
-  }
-  Blocks blocks;
-  blocks.pose_pose.setZero(6 * num_keyframes, 6 * num_keyframes);
-  AddPoseRows(problem, pass, share_sum, weight, common_share,
-              &blocks.pose_pose);
-  ShiftDiagonal(&blocks.pose_pose);
+  ShiftDiagonal(&hessian.poses);
   Eigen::VectorXd g(6 * num_keyframes);
   for (int k = 0; k < num_keyframes; ++k) {
     g.segment<6>(6 * k) = weight * pass.pose_gradient[k];
   }
 
   JointSystem system;
-  AddPlaneBlocks(problem, pass, share_sum, plane_basis, weight, common_share,
-                 &blocks);
   system.planes.resize(plane_basis.size());
   ParallelFor(0, plane_basis.size(), [&](size_t j) {
     JointPlaneRows& rows = system.planes[j];
+    JointPlaneBlocks& blocks = hessian.planes[j];
     const Eigen::Matrix4d moment = plane_weight * problem.moments[j];
     const Eigen::Map<const Eigen::Vector4d> phi(state.planes.data() +
                                                 kPlaneSize * j);
-    blocks.plane_plane[j] +=
-        plane_basis[j].transpose() * moment * plane_basis[j];
+    blocks.plane += plane_basis[j].transpose() * moment * plane_basis[j];
     const Eigen::Vector3d plane_gradient =
         plane_basis[j].transpose() *
         (weight * pass.plane_gradient[j] + moment * phi);
-    ShiftDiagonal(&blocks.plane_plane[j]);
-    rows.diagonal = UpperFactor(blocks.plane_plane[j]);
+    ShiftDiagonal(&blocks.plane);
+    rows.diagonal = UpperFactor(blocks.plane);
     const auto lower = rows.diagonal.transpose().triangularView<Eigen::Lower>();
-    rows.keyframes = std::move(blocks.plane_keyframes[j]);
-    rows.poses = lower.solve(blocks.plane_pose[j]);
+    rows.keyframes = std::move(blocks.keyframes);
+    rows.poses = lower.solve(blocks.poses);
     rows.residual = lower.solve(plane_gradient);
   });
-  SubtractPlanes(system, num_keyframes, &blocks.pose_pose);
+  SubtractPlanes(system, num_keyframes, &hessian.poses);
   for (const JointPlaneRows& rows : system.planes) {
     for (size_t a = 0; a < rows.keyframes.size(); ++a) {
       g.segment<6>(6 * rows.keyframes[a]) -=
@@ -221,7 +124,7 @@ JointSystem FactorJointSystem(const TextureProblem& problem,
     }
     system.explained += rows.residual.squaredNorm();
   }
-  system.poses = UpperFactor(blocks.pose_pose);
+  system.poses = UpperFactor(hessian.poses);
   system.pose_residual =
       system.poses.transpose().triangularView<Eigen::Lower>().solve(g);
   system.explained += system.pose_residual.squaredNorm();

@@ -3,7 +3,8 @@
 //
 // The Gauss-Newton system of the joint solve (problems/joint_pass.h) over all
 // poses and planes, as the factor that Ceres gets: with H + shift = R^T R the
-// rows R and the residual R^-T g have the exact gradient and the chosen Hessian.
+// rows R and the residual R^-T g have the exact gradient and the chosen
+// Hessian.
 //
 // Planes do not interact (a texel has one plane), so they come first in the
 // ordering and R is block upper triangular: 3 rows a plane over (plane, poses
@@ -13,13 +14,13 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "problems/joint_pass.h"
+#include "problems/joint_hessian.h"
 
 namespace facet {
 
 struct JointPlaneRows {
-  std::vector<int> keyframes;       // that see the plane, ascending
-  Eigen::Matrix3d diagonal;         // over the plane's tangent, upper
+  std::vector<int> keyframes;  // that see the plane, ascending
+  Eigen::Matrix3d diagonal;    // over the plane's tangent, upper
   Eigen::Matrix<double, 3, Eigen::Dynamic> poses;  // 6 columns a keyframe
   Eigen::Vector3d residual;
 };
@@ -31,18 +32,36 @@ struct JointSystem {
   double explained = 0;                // |R^-T g|^2
 };
 
-// `plane_basis`: 4 x 3 PlusJacobian of each plane's manifold, or empty to keep
-// planes fixed. `weight` multiplies H and g of E_c (texel area weight). With
-// planes, lambda1 E_p is part of the system (`plane_weight` times its moments):
-// alone, E_c leaves planes without texture undetermined. `common_share` is kappa
-// of joint_pass.h.
-JointSystem FactorJointSystem(
-    const TextureProblem& problem,
-    const JointPass& pass,
-    const ReconState& state,
-    const std::vector<Eigen::Matrix<double, 4, 3>>& plane_basis,
-    double weight,
-    double plane_weight,
-    double common_share);
+// Stiffens the plane blocks so that no Gauss-Newton step of a plane by itself
+// goes beyond the limits. The energy hardly knows the tilt of planes with a few
+// texels or of narrow strips: their steps would turn them over, and the one
+// trust region of the joint solve would shrink for all. With r^2 the cost of
+// the plane and L the limit,
+//
+//   mu = r^2 / (2 L)^2   gives   |step| <= |J| |r| / (J^2 + mu) <= L,
+//
+// and a well determined plane hardly notices. The gradient stays exact.
+void LimitPlaneSteps(const TextureProblem& problem,
+                     const JointPass& pass,
+                     const ReconState& state,
+                     const std::vector<PlaneBasis>& plane_basis,
+                     double weight,
+                     double plane_weight,
+                     double max_tilt_rad,
+                     double max_offset_m,
+                     JointHessian* hessian);
+
+// From the `hessian` of E_c and the gradients of `pass`, which `weight`
+// multiplies (texel area weight; the Hessian has it already). With planes,
+// lambda1 E_p is part of the system (`plane_weight` times its moments): alone,
+// E_c leaves planes without texture undetermined. `plane_basis` as for the
+// Hessian.
+JointSystem FactorJointSystem(const TextureProblem& problem,
+                              const JointPass& pass,
+                              const ReconState& state,
+                              JointHessian hessian,
+                              const std::vector<PlaneBasis>& plane_basis,
+                              double weight,
+                              double plane_weight);
 
 }  // namespace facet

@@ -116,6 +116,7 @@ void SolvePlanes(const TextureProblem& problem,
   const std::vector<Eigen::Matrix4d> moments =
       PlaneMoments(problem, weights, *state);
   std::vector<int> iterations(num_planes, 0), reverted(num_planes, 0);
+  std::vector<double> cost_start(num_planes, 0.0), cost_end(num_planes, 0.0);
 
   ParallelFor(0, num_planes, [&](size_t j) {
     const std::vector<PlaneSegment> segments =
@@ -156,6 +157,8 @@ void SolvePlanes(const TextureProblem& problem,
     ceres::Solve(PlaneSolverOptions(config, memory->plane_radius[j]),
                  &ceres_problem, &solved);
     iterations[j] = static_cast<int>(solved.iterations.size());
+    cost_start[j] = 2 * solved.initial_cost;
+    cost_end[j] = 2 * solved.final_cost;
     if (!solved.iterations.empty()) {
       memory->plane_radius[j] = std::clamp(
           solved.iterations.back().trust_region_radius, 1e-2, 1e8);
@@ -170,6 +173,8 @@ void SolvePlanes(const TextureProblem& problem,
     summary->problems += iterations[j] > 0 ? 1 : 0;
     summary->iterations += iterations[j];
     summary->reverted += reverted[j];
+    summary->cost_before += cost_start[j];
+    summary->cost_after += cost_end[j];
   }
 }
 

@@ -211,6 +211,7 @@ bool WarpIsInvertible(const WarpLattice& lattice, const double* f) {
 
 struct FrameResult {
   int iterations = 0;
+  double cost_before = 0, cost_after = 0;
   bool reverted = false;
 };
 
@@ -236,6 +237,8 @@ FrameResult SolveFrame(const TextureProblem& problem,
                frame_problem.ceres_problem(), &solved);
   FrameResult result;
   result.iterations = static_cast<int>(solved.iterations.size());
+  result.cost_before = 2 * solved.initial_cost;
+  result.cost_after = 2 * solved.final_cost;
   if (!solved.iterations.empty()) {
     *radius = std::clamp(solved.iterations.back().trust_region_radius, 1e-2,
                          1e8);
@@ -281,6 +284,8 @@ void SolvePosesAndWarps(const TextureProblem& problem,
     summary->problems += result.iterations > 0 ? 1 : 0;
     summary->iterations += result.iterations;
     summary->reverted += result.reverted ? 1 : 0;
+    summary->cost_before += result.cost_before;
+    summary->cost_after += result.cost_after;
   }
 }
 

@@ -8,10 +8,9 @@
 #include "costs/se3_manifold.h"
 
 namespace facet {
-namespace {
 
-// weight * rho.
-ceres::LossFunction* CreateLoss(const Formulation& formulation, double weight) {
+ceres::LossFunction* CreateReferenceLoss(const Formulation& formulation,
+                                         double weight) {
   ceres::LossFunction* loss = nullptr;
   switch (formulation.loss) {
     case LossKind::kSquared:
@@ -29,11 +28,11 @@ ceres::LossFunction* CreateLoss(const Formulation& formulation, double weight) {
   return new ceres::ScaledLoss(loss, weight, ceres::TAKE_OWNERSHIP);
 }
 
-PhotometricCost MakeCost(const TextureProblem& problem,
-                         const SampledImage& image,
-                         int a,
-                         int b,
-                         uint32_t texel) {
+PhotometricCost MakeReferenceCost(const TextureProblem& problem,
+                                  const SampledImage& image,
+                                  int a,
+                                  int b,
+                                  uint32_t texel) {
   return PhotometricCost(image,
                          problem.camera,
                          problem.lattice,
@@ -43,8 +42,6 @@ PhotometricCost MakeCost(const TextureProblem& problem,
                          problem.anchors[problem.texels.plane[texel]],
                          problem.formulation.out_of_image);
 }
-
-}  // namespace
 
 void AddReferencePlane(const TextureProblem& problem,
                        const ReconState& state,
@@ -83,11 +80,11 @@ void AddReferencePlane(const TextureProblem& problem,
                                     bottom[3]};
         ceres_problem->AddResidualBlock(
             PhotometricPlaneCost::Create(
-                PhotometricPlaneCost(MakeCost(problem, image, c.a, c.b, id),
+                PhotometricPlaneCost(MakeReferenceCost(problem, image, c.a, c.b, id),
                                      pose,
                                      state.colors[channel * num_texels + id],
                                      vertices)),
-            CreateLoss(problem.formulation, weight),
+            CreateReferenceLoss(problem.formulation, weight),
             plane);
       }
     }
@@ -113,11 +110,11 @@ void AddReferenceCell(const TextureProblem& problem,
           state.planes.data() + kPlaneSize * problem.texels.plane[id];
       ceres_problem->AddResidualBlock(
           PhotometricFrameCost::Create(
-              PhotometricFrameCost(MakeCost(problem, image, a, b, id),
+              PhotometricFrameCost(MakeReferenceCost(problem, image, a, b, id),
                                    plane,
                                    state.colors[channel * num_texels + id]),
               parameters.size() > 1),
-          CreateLoss(problem.formulation, weight),
+          CreateReferenceLoss(problem.formulation, weight),
           parameters);
     }
   }

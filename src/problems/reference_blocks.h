@@ -6,14 +6,27 @@
 // losses. What the compressed blocks are checked and measured against.
 #pragma once
 
+#include <ceres/loss_function.h>
 #include <ceres/problem.h>
 
 #include <vector>
 
+#include "costs/photometric.h"
 #include "costs/plane_photometric_cost.h"
 #include "problems/texture_problem.h"
 
 namespace facet {
+
+// weight * rho.
+ceres::LossFunction* CreateReferenceLoss(const Formulation& formulation,
+                                         double weight);
+
+// The residual of `texel` in `image`, in the warp cell (a, b).
+PhotometricCost MakeReferenceCost(const TextureProblem& problem,
+                                  const SampledImage& image,
+                                  int a,
+                                  int b,
+                                  uint32_t texel);
 
 // The observations `segments` of plane `index` as functions of the block
 // `plane`; the rest is that of `state`. `weight` multiplies rho.

@@ -3,6 +3,7 @@
 #include "problems/solve_blocks.h"
 
 #include "problems/color_step.h"
+#include "problems/explicit_problem.h"
 #include "problems/gauge.h"
 #include "problems/joint_step.h"
 #include "problems/plane_step.h"
@@ -11,7 +12,6 @@
 #include "util/resources.h"
 
 namespace facet {
-
 std::string BlockSetName(unsigned blocks) {
   std::string name;
   const auto add = [&](unsigned bit, const char* text) {
@@ -26,6 +26,20 @@ std::string BlockSetName(unsigned blocks) {
   return name;
 }
 
+bool CanSolve(unsigned blocks, JointMethod method) {
+  if (blocks == kColors || blocks == kPlanes) return true;
+  if (blocks != 0 && (blocks & ~unsigned{kPoses | kWarps}) == 0) return true;
+  if (!(blocks & kColors)) return false;
+  if (HasExplicitColors(method)) return true;
+  return (blocks & ~unsigned{kPlanes}) == (kColors | kPoses);
+}
+
+std::string SolvableBlockSets(JointMethod method) {
+  return "C, Phi, T, F, T+F, " + std::string(HasExplicitColors(method)
+                                                 ? "or C with any others"
+                                                 : "C+T or C+Phi+T");
+}
+
 PhaseSummary SolveBlocks(const TextureProblem& problem,
                          const EnergyWeights& weights,
                          unsigned free,
@@ -37,20 +51,27 @@ PhaseSummary SolveBlocks(const TextureProblem& problem,
   PhaseSummary summary;
   summary.blocks = BlockSetName(free);
   summary.before = before;
+  if (!CanSolve(free, config.joint_method)) {
+    throw OptionsError("the blocks " + summary.blocks +
+                       " cannot be solved together; use " +
+                       SolvableBlockSets(config.joint_method));
+  }
   const ReconState backup = *state;
   if (free == kColors) {
     SolveColors(problem, state);
   } else if (free == kPlanes) {
     SolvePlanes(problem, weights, config, memory, state, &summary);
-  } else if (free != 0 && (free & ~unsigned{kPoses | kWarps}) == 0) {
+  } else if (free == (kPoses | kWarps) && config.decouple_warps) {
+    for (const unsigned blocks : {kPoses, kWarps}) {
+      SolvePosesAndWarps(
+          problem, weights, blocks, config, memory, state, &summary);
+    }
+  } else if (!(free & kColors)) {
     SolvePosesAndWarps(problem, weights, free, config, memory, state, &summary);
-  } else if (free == (kColors | kPoses) ||
-             free == (kColors | kPlanes | kPoses)) {
-    SolveJoint(problem, weights, free, config, memory, state, &summary);
+  } else if (HasExplicitColors(config.joint_method)) {
+    SolveExplicit(problem, weights, free, config, memory, state, &summary);
   } else {
-    throw OptionsError("the blocks " + summary.blocks +
-                       " cannot be solved together; use C, Phi, T, F, T+F, "
-                       "C+T or C+Phi+T");
+    SolveJoint(problem, weights, free, config, memory, state, &summary);
   }
   const bool joint = (free & kColors) && (free & kPoses);
   if ((free & kPoses) && !joint && config.remove_common_motion) {

@@ -6,8 +6,9 @@
 //   {C}       closed-form means (problems/color_step.h)
 //   {Phi}     one small Ceres problem a plane, on all threads
 //   {T}, {F}, {T, F}   one Ceres problem a keyframe, on all threads
-//   {C, T}, {C, Phi, T}   one joint Ceres problem (problems/joint_step.h); with
-//             planes it is experimental: on real scans its steps are too bold
+//   {C, T}, {C, Phi, T}   one joint Ceres problem (problems/joint_step.h)
+//   {C, ...}  any set, small problems: explicit colours, methods kSchur and
+//             kInner (problems/explicit_problem.h)
 //
 // A phase that raises the objective E_tex + E_prior is rolled back and marked.
 #pragma once
@@ -16,6 +17,7 @@
 #include <vector>
 
 #include "problems/energy.h"
+#include "problems/joint_method.h"
 #include "problems/texture_problem.h"
 
 namespace facet {
@@ -30,6 +32,11 @@ enum BlockSet : unsigned {
 // "C", "Phi", "T+F", ...
 std::string BlockSetName(unsigned blocks);
 
+// Whether SolveBlocks can free these blocks together, and the list of such sets
+// for messages.
+bool CanSolve(unsigned blocks, JointMethod method);
+std::string SolvableBlockSets(JointMethod method);
+
 struct SolverConfig {
   // After every phase that moves poses, take their common motion since the
   // start out again and average the colours anew (problems/gauge.h).
@@ -37,6 +44,10 @@ struct SolverConfig {
   bool fix_first_pose = false;  // keyframe 0 does not move
   int max_plane_iterations = 3;
   int max_pose_iterations = 5;
+  // T+F: poses first, then warps, instead of both in one problem a keyframe.
+  bool decouple_warps = false;
+  JointMethod joint_method = JointMethod::kConsensus;
+  JointLinearSolver joint_linear_solver = JointLinearSolver::kCholesky;
   // Joint solve: kappa and eta of problems/joint_pass.h, and the largest
   // trust-region radius, which with the pose prior holds soft gauge directions.
   int max_joint_iterations = 5;
@@ -61,7 +72,7 @@ struct SolverConfig {
 // first use.
 struct SolverMemory {
   std::vector<double> plane_radius, frame_radius;
-  double joint_radius = 1e4;
+  double joint_radius = 1e4, explicit_radius = 1e4;
 };
 
 struct PhaseSummary {
@@ -70,6 +81,9 @@ struct PhaseSummary {
   int problems = 0;      // Ceres problems solved
   int iterations = 0;    // summed over them
   int reverted = 0;      // problems whose result was worse and undone
+  // Twice Ceres's own cost at start and end, summed over the problems: the
+  // terms of the objective that the phase can change (tested).
+  double cost_before = 0, cost_after = 0;
   double wall_s = 0, cpu_s = 0;
   EnergyTerms before, after;
 };

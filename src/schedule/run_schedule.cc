@@ -9,23 +9,39 @@
 namespace facet {
 namespace {
 
-std::string CsvLine(int round,
+std::string CsvLine(int level,
+                    int round,
                     const std::string& phase,
                     const EnergyTerms& e,
                     const PhaseSummary* summary,
                     double wall_s,
                     double cpu_s) {
   char line[512];
-  std::snprintf(line, sizeof(line),
-                "%d,%s,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.6f,%zu,%zu,%zu,%zu,%d,%d,"
-                "%d,%d,%.3f,%.3f\n",
-                round, phase.c_str(), e.e_c, e.e_p, e.e_s, e.e_tex, e.e_prior,
-                e.e_depth, e.rms_grey, e.observations, e.clamped, e.behind,
-                e.lost,
-                summary ? summary->accepted : 1,
-                summary ? summary->problems : 0,
-                summary ? summary->iterations : 0,
-                summary ? summary->reverted : 0, wall_s, cpu_s);
+  std::snprintf(
+      line,
+      sizeof(line),
+      "%d,%d,%s,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.6f,%zu,%zu,%zu,%zu,%d,"
+      "%d,%d,%d,%.3f,%.3f\n",
+      level,
+      round,
+      phase.c_str(),
+      e.e_c,
+      e.e_p,
+      e.e_s,
+      e.e_tex,
+      e.e_prior,
+      e.e_depth,
+      e.rms_grey,
+      e.observations,
+      e.clamped,
+      e.behind,
+      e.lost,
+      summary ? summary->accepted : 1,
+      summary ? summary->problems : 0,
+      summary ? summary->iterations : 0,
+      summary ? summary->reverted : 0,
+      wall_s,
+      cpu_s);
   return line;
 }
 
@@ -57,15 +73,21 @@ Trace RunSchedule(const TextureProblem& problem,
   EnergyTerms current = trace.initial;
   int round = 0;
   for (size_t g = 0; g < schedule.size(); ++g) {
+    const double enough = schedule[g].stop.value_or(stop.relative_decrease);
     std::vector<double> objective = {current.Objective()};
     for (int r = 0; r < schedule[g].rounds; ++r) {
       ++round;
-      for (const unsigned blocks : schedule[g].phases) {
+      for (const SchedulePhase& phase : schedule[g].phases) {
         TraceRow row;
         row.group = static_cast<int>(g);
         row.round = round;
-        row.phase = SolveBlocks(problem, weights, blocks, config, current,
-                                &memory, state);
+        row.phase = SolveBlocks(problem,
+                                weights,
+                                phase.blocks,
+                                PhaseConfig(config, phase),
+                                current,
+                                &memory,
+                                state);
         current = row.phase.after;
         row.wall_s = watch.WallSeconds();
         row.cpu_s = watch.CpuSecondsSince();
@@ -75,9 +97,8 @@ Trace RunSchedule(const TextureProblem& problem,
       }
       objective.push_back(current.Objective());
       const size_t n = objective.size();
-      if (stop.relative_decrease > 0 && n >= 3 &&
-          objective[n - 3] - objective[n - 1] <=
-              stop.relative_decrease * objective[n - 3]) {
+      if (enough > 0 && n >= 3 &&
+          objective[n - 3] - objective[n - 1] <= enough * objective[n - 3]) {
         break;
       }
     }
@@ -87,13 +108,18 @@ Trace RunSchedule(const TextureProblem& problem,
 
 std::string TraceCsv(const Trace& trace) {
   std::string csv =
-      "round,phase,E_c,E_p_m2,E_s_px2,E_tex,E_prior,E_depth,rms_grey_255,"
+      "level,round,phase,E_c,E_p_m2,E_s_px2,E_tex,E_prior,E_depth,rms_grey_255,"
       "observations,clamped,behind,lost,accepted,problems,iterations,reverted,"
       "wall_s,cpu_s\n";
-  csv += CsvLine(0, "initial", trace.initial, nullptr, 0, 0);
+  csv += CsvLine(0, 0, "initial", trace.initial, nullptr, 0, 0);
   for (const TraceRow& row : trace.rows) {
-    csv += CsvLine(row.round, row.phase.blocks, row.phase.after, &row.phase,
-                   row.wall_s, row.cpu_s);
+    csv += CsvLine(row.level,
+                   row.round,
+                   row.phase.blocks,
+                   row.phase.after,
+                   &row.phase,
+                   row.wall_s,
+                   row.cpu_s);
   }
   return csv;
 }

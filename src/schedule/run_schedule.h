@@ -15,11 +15,12 @@ namespace facet {
 
 struct StopRule {
   // A group ends early when the objective fell by less than this share over two
-  // rounds. 0 = never.
+  // rounds. 0 = never. The group's own option in the schedule wins.
   double relative_decrease = 1e-4;
 };
 
 struct TraceRow {
+  int level = 0;             // of the image pyramid, 0 = finest
   int group = 0, round = 0;  // round counts through the whole schedule
   PhaseSummary phase;
   double wall_s = 0, cpu_s = 0;  // since the start of the schedule

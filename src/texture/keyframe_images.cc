@@ -44,4 +44,27 @@ KeyframeImages LoadKeyframeImages(const RgbdSequence& sequence,
   return images;
 }
 
+KeyframeImages PyramidLevel(const KeyframeImages& images,
+                            int level,
+                            double sigma) {
+  KeyframeImages reduced;
+  const size_t n = images.size();
+  reduced.rgb.resize(n);
+  reduced.luma.resize(n);
+  reduced.smooth.resize(n);
+  ParallelFor(0, n, [&](size_t k) {
+    const cv::Size size(images.luma[k].cols >> level,
+                        images.luma[k].rows >> level);
+    const cv::Rect whole_squares(
+        0, 0, size.width << level, size.height << level);
+    const auto reduce = [&](const cv::Mat& image, cv::Mat* out) {
+      cv::resize(image(whole_squares), *out, size, 0, 0, cv::INTER_AREA);
+    };
+    reduce(images.rgb[k], &reduced.rgb[k]);
+    reduce(images.luma[k], &reduced.luma[k]);
+    reduced.smooth[k] = Smooth(reduced.luma[k], sigma);
+  });
+  return reduced;
+}
+
 }  // namespace facet

@@ -5,8 +5,8 @@
 // (185 frames of 640 x 480: 0.6 GB with all three kinds).
 #pragma once
 
-#include <opencv2/core.hpp>
 #include <array>
+#include <opencv2/core.hpp>
 #include <vector>
 
 #include "rgbd/sequence.h"
@@ -31,5 +31,12 @@ std::array<cv::Mat, 3> SmoothChannels(const cv::Mat& rgb, double sigma);
 KeyframeImages LoadKeyframeImages(const RgbdSequence& sequence,
                                   const std::vector<int>& keyframes,
                                   double sigma);
+
+// Pyramid level `level` (geometry/pinhole.h): `rgb` and `luma` are means over
+// squares of 2^level pixels, what does not fill one at the right and lower
+// border is left out; `smooth` is of `sigma` px of that level.
+KeyframeImages PyramidLevel(const KeyframeImages& images,
+                            int level,
+                            double sigma);
 
 }  // namespace facet

@@ -36,7 +36,7 @@ foreach(source IN LISTS sources)
 endforeach()
 
 file(READ ${ROOT}/src/schedule/run_schedule.cc text)
-if(NOT text MATCHES "\"round,phase,[^;]*\\\\n\";")
+if(NOT text MATCHES "\"level,round,phase,[^;]*\\\\n\";")
   message(SEND_ERROR "the header of trace.csv was not found")
 endif()
 string(REGEX REPLACE "[\" \n]|\\\\n" "" columns "${CMAKE_MATCH_0}")

@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "problems/color_step.h"
-#include "tests/problems/reference_problem.h"
+#include "problems/explicit_problem.h"
 #include "tests/support/tiny_scene.h"
 #include "util/random.h"
 
@@ -34,7 +34,7 @@ EnergyWeights SomeWeights() {
 
 // The paper's energy against one Ceres residual block an observation. Breaks if
 // a weight, a 1/2, a keyframe's texel list or the origin shift is wrong.
-TEST(Energy, IsTwiceTheCostOfTheReferenceProblem) {
+TEST(Energy, IsTwiceTheCostOfTheExplicitProblem) {
   TinySceneOptions options;
   options.texel_spacing_m = 0.1;
   TinyScene scene = MakeTinyScene(options);
@@ -45,7 +45,7 @@ TEST(Energy, IsTwiceTheCostOfTheReferenceProblem) {
     weights.pose_prior = pose_prior;
     weights.depth_weight = 0.03;
     const EnergyTerms terms = EvaluateEnergy(scene.problem, weights, state);
-    ReferenceProblem reference(scene.problem, weights, &state);
+    ExplicitProblem reference(scene.problem, weights, &state);
     EXPECT_NEAR(
         2 * reference.Cost(), terms.Objective(), 1e-5 * terms.Objective());
     EXPECT_EQ(terms.e_prior > 0, pose_prior);

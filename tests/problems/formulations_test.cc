@@ -302,22 +302,36 @@ TEST(Formulations, FirstValuesAreTheDefaults) {
   }
 }
 
-// What makes no sense together is refused with the reason.
+// What makes no sense together is refused with the reason. Explicit colours can
+// solve everything, on small problems.
 TEST(Formulations, NonsenseIsRefused) {
+  const SolvedSet planes{kPlanes}, poses{kPoses | kWarps}, colors{kColors};
+  const unsigned all = kColors | kPlanes | kPoses;
+  const SolvedSet joint{kColors | kPoses}, full{all};
+  const SolvedSet plain{all, JointMethod::kSchur};
   Formulation raw;
   raw.plane = PlaneKind::kRaw4;
-  EXPECT_NO_THROW(CheckFormulation(raw, {kPlanes, kColors | kPoses}));
-  EXPECT_THROW(CheckFormulation(raw, {kColors | kPlanes | kPoses}),
-               OptionsError);
+  EXPECT_NO_THROW(CheckFormulation(raw, {planes, joint, plain}));
+  EXPECT_THROW(CheckFormulation(raw, {full}), OptionsError);
   Formulation reference;
   reference.evaluation = Evaluation::kReference;
-  EXPECT_NO_THROW(
-      CheckFormulation(reference, {kColors, kPlanes, kPoses | kWarps}));
-  EXPECT_THROW(CheckFormulation(reference, {kColors | kPoses}), OptionsError);
-  EXPECT_NO_THROW(CheckObservationLimit(reference, kMaxReferenceObservations));
-  EXPECT_THROW(CheckObservationLimit(reference, kMaxReferenceObservations + 1),
+  EXPECT_NO_THROW(CheckFormulation(reference, {colors, planes, poses, plain}));
+  EXPECT_THROW(CheckFormulation(reference, {joint}), OptionsError);
+  const size_t most = kMaxReferenceObservations;
+  EXPECT_NO_THROW(CheckObservationLimit(reference, {planes}, most));
+  EXPECT_THROW(CheckObservationLimit(reference, {planes}, most + 1),
                OptionsError);
-  EXPECT_NO_THROW(CheckObservationLimit({}, size_t{1} << 40));
+  EXPECT_NO_THROW(CheckObservationLimit({}, {plain}, most));
+  try {
+    CheckObservationLimit({}, {planes, plain}, most + 1);
+    FAIL();
+  } catch (const OptionsError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("--joint=schur"));
+    EXPECT_THAT(error.what(), HasSubstr(std::to_string(most + 1)));
+  }
+  // Of alternating phases the method does not matter.
+  EXPECT_NO_THROW(CheckObservationLimit(
+      {}, {{kPlanes, JointMethod::kSchur}, full}, size_t{1} << 40));
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "problems/color_step.h"
-#include "tests/problems/reference_problem.h"
+#include "problems/explicit_problem.h"
 #include "tests/support/tiny_scene.h"
 #include "util/errors.h"
 #include "util/random.h"
@@ -60,7 +60,7 @@ TEST(SolveColors, IsTheMinimumOverTheColours) {
   Start start = MakeStart(0.1);
   std::fill(start.state.colors.begin(), start.state.colors.end(), 0.2f);
   ReconState by_ceres = start.state;
-  ReferenceProblem reference(start.scene.problem, start.weights, &by_ceres);
+  ExplicitProblem reference(start.scene.problem, start.weights, &by_ceres);
   reference.Step(kColors, ceres::SPARSE_NORMAL_CHOLESKY, 10);
   SolveColors(start.scene.problem, &start.state);
   for (size_t i = 0; i < start.state.colors.size(); ++i) {
@@ -104,7 +104,7 @@ TEST(SolveBlocks, FirstStepIsThatOfTheReference) {
     const PhaseSummary summary = Solve(start, c.blocks, config, &found);
     EXPECT_TRUE(summary.accepted);
     EXPECT_EQ(summary.reverted, 0);
-    ReferenceProblem(start.scene.problem, start.weights, &expected)
+    ExplicitProblem(start.scene.problem, start.weights, &expected)
         .Step(c.blocks, c.solver);
     for (const auto member :
          {&ReconState::planes, &ReconState::poses, &ReconState::warps}) {
@@ -150,7 +150,7 @@ TEST(SolveBlocks, PosesAreSolvedUnderTheWarpThatIsThere) {
   config.max_pose_iterations = 1;
   EXPECT_TRUE(Solve(start, kPoses, config, &state).accepted);
   EXPECT_EQ(state.warps, before.warps);
-  ReferenceProblem(start.scene.problem, start.weights, &expected)
+  ExplicitProblem(start.scene.problem, start.weights, &expected)
       .Step(kPoses, ceres::SPARSE_NORMAL_CHOLESKY);
   EXPECT_LE(Distance(state.poses, expected.poses),
             1e-3 * Distance(before.poses, expected.poses));

@@ -75,6 +75,21 @@ TEST_F(RunScheduleTest, StopRuleEndsTheGroupOnly) {
   EXPECT_EQ(trace.rows.back().group, 1);
 }
 
+// Breaks if a group's own rule does not win, or reaches its neighbours.
+TEST_F(RunScheduleTest, GroupHasItsOwnStopRule) {
+  EXPECT_EQ(Run("9x[C]{stop=1}; 5x[C]", {0}).rows.size(), 2u + 5u);
+  EXPECT_EQ(Run("9x[C]{stop=0}; 5x[C]", {1}).rows.size(), 9u + 2u);
+}
+
+// Breaks if options of a phase do not reach its solver.
+TEST_F(RunScheduleTest, PhaseHasItsOwnIterations) {
+  const Trace trace = Run("C; T{iterations=1}", {0});
+  const PhaseSummary& phase = trace.rows[1].phase;
+  EXPECT_GT(phase.problems, 0);
+  // Ceres counts the start.
+  EXPECT_LE(phase.iterations, 2 * phase.problems);
+}
+
 // 0 = never, even when nothing is gained any more.
 TEST_F(RunScheduleTest, StopRuleZeroRunsAllRounds) {
   EXPECT_EQ(Run("9x[C]", {0}).rows.size(), 9u);

@@ -19,13 +19,21 @@ std::string ErrorOf(const std::string& text) {
   return "";
 }
 
+std::vector<unsigned> BlocksOf(const ScheduleGroup& group) {
+  std::vector<unsigned> blocks;
+  for (const SchedulePhase& phase : group.phases) {
+    blocks.push_back(phase.blocks);
+  }
+  return blocks;
+}
+
 // The paper's alternation. Breaks if "T" is not told from "T+F" or counts get
 // lost.
 TEST(Schedule, ReadsThePaper) {
   const Schedule schedule = ParseSchedule("10x[C; Phi; T+F]");
   ASSERT_EQ(schedule.size(), 1u);
   EXPECT_EQ(schedule[0].rounds, 10);
-  EXPECT_EQ(schedule[0].phases,
+  EXPECT_EQ(BlocksOf(schedule[0]),
             (std::vector<unsigned>{kColors, kPlanes, kPoses | kWarps}));
 }
 
@@ -38,7 +46,7 @@ TEST(Schedule, CountsAndBracketsAreOptional) {
   EXPECT_EQ(schedule[1].rounds, 1);
   EXPECT_EQ(schedule[1].phases.size(), 2u);
   EXPECT_EQ(schedule[2].rounds, 3);
-  EXPECT_EQ(schedule[3].phases, std::vector<unsigned>{kPlanes});
+  EXPECT_EQ(BlocksOf(schedule[3]), std::vector<unsigned>{kPlanes});
 }
 
 // White space is free, and the canonical text is a fixed point.
@@ -50,7 +58,12 @@ TEST(Schedule, PrintedScheduleReadsBack) {
                            "2x[T]",
                            "F+T",
                            " 1x[C] ",
-                           "100000x[Phi]"}) {
+                           "100000x[Phi]",
+                           "C+T { iterations = 3 }",
+                           "[C+Phi+T{joint=frame_tensors,iterations=12}]",
+                           "T+F{decoupled}; Phi{iterations=2}",
+                           "6x[C; T]{stop=1e-3}; [C]{stop=0}; [F]{ stop=0.3 }",
+                           "C+Phi+T+F{joint=schur}"}) {
     const Schedule schedule = ParseSchedule(text);
     const std::string printed = ToString(schedule);
     const Schedule again = ParseSchedule(printed);
@@ -58,6 +71,7 @@ TEST(Schedule, PrintedScheduleReadsBack) {
     for (size_t g = 0; g < schedule.size(); ++g) {
       EXPECT_EQ(again[g].rounds, schedule[g].rounds) << printed;
       EXPECT_EQ(again[g].phases, schedule[g].phases) << printed;
+      EXPECT_EQ(again[g].stop, schedule[g].stop) << printed;
     }
     EXPECT_EQ(ToString(again), printed);
   }
@@ -87,6 +101,24 @@ TEST(Schedule, ErrorsPointAtTheCharacter) {
       {"-1x[C]", 1},
       {"Phix", 1},
       {"c", 1},
+      {"C; Phi+T", 4},
+      {"C+T+F", 1},
+      {"C+T{iterations=0}", 16},
+      {"C+T{iterations=}", 16},
+      {"C+T{iterations 3}", 16},
+      {"C+T{iteration=3}", 5},
+      {"C+T{}", 5},
+      {"C+T{iterations=3", 17},
+      {"C+T{iterations=3 joint=exact}", 18},
+      {"C+T{joint=best}", 11},
+      {"T{joint=exact}", 3},
+      {"C{iterations=2}", 3},
+      {"C+T{decoupled}", 5},
+      {"[C]{iterations=2}", 5},
+      {"2x[C]{stop=-1}", 12},
+      {"2x[C]{stop=2}", 12},
+      {"2x[C]{stop=x}", 12},
+      {"C{stop=0.1}", 3},
   };
   for (const auto& c : cases) {
     const std::string error = ErrorOf(c.text);
@@ -100,6 +132,47 @@ TEST(Schedule, ErrorsPointAtTheCharacter) {
       EXPECT_NE(error.find(block), std::string::npos) << error;
     }
   }
+}
+
+// Breaks if an option of a phase reaches another setting than its own, or
+// others lose theirs.
+TEST(Schedule, OptionsOfAPhaseWinOverThoseOfTheRun) {
+  SolverConfig config;
+  config.max_pose_iterations = 50;
+  config.joint_method = JointMethod::kExact;
+  const Schedule schedule = ParseSchedule(
+      "2x[C+T{iterations=3, joint=frozen}; T+F{decoupled}; T]{stop=0.01}; C");
+  const SolverConfig joint = PhaseConfig(config, schedule[0].phases[0]);
+  EXPECT_EQ(joint.max_joint_iterations, 3);
+  EXPECT_EQ(joint.max_pose_iterations, 3);
+  EXPECT_EQ(joint.joint_method, JointMethod::kFrozen);
+  EXPECT_FALSE(joint.decouple_warps);
+  EXPECT_TRUE(PhaseConfig(config, schedule[0].phases[1]).decouple_warps);
+  const SolverConfig pose = PhaseConfig(config, schedule[0].phases[2]);
+  EXPECT_EQ(pose.max_pose_iterations, 50);
+  EXPECT_EQ(pose.joint_method, JointMethod::kExact);
+  EXPECT_EQ(schedule[0].stop, 0.01);
+  EXPECT_FALSE(schedule[1].stop.has_value());
+}
+
+// What can be solved together depends on the method, the phase's own or that
+// of the run. Breaks if a run with explicit colours is refused a full joint
+// phase, or one with eliminated colours gets as far as the phase.
+TEST(Schedule, BlocksAreCheckedAgainstTheMethod) {
+  EXPECT_NE(ErrorOf("C+Phi+T+F"), "");
+  EXPECT_EQ(ErrorOf("C+Phi+T+F{joint=inner}"), "");
+  EXPECT_NO_THROW(ParseSchedule("C+Phi+T+F", JointMethod::kSchur));
+  EXPECT_THROW(ParseSchedule("C+Phi+T+F{joint=consensus}", JointMethod::kSchur),
+               OptionsError);
+}
+
+// Breaks if coarse levels free a warp, lose the poses of a phase, or spend time
+// on groups that were there for the warps.
+TEST(Schedule, CoarseLevelsHaveNoWarps) {
+  EXPECT_EQ(ToString(WithoutWarps(
+                ParseSchedule("4x[Phi; C+T{iterations=3}]; 5x[C; Phi; F]; "
+                              "2x[C; T+F{decoupled}]{stop=0.1}; F"))),
+            "4x[Phi; C+T{iterations=3}]; 2x[C; T]{stop=0.1}");
 }
 
 // Breaks if a long count overflows.
