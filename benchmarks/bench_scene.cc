@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "benchmarks/bench_scene.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "problems/color_step.h"
@@ -10,6 +11,7 @@ namespace facet {
 namespace {
 
 constexpr double kCoarseSpacing = 0.05;  // [m]
+constexpr double kTileSide = 0.16;       // [m], at most 16 texels
 
 TinySceneOptions OptionsOf(const BenchSize& size, double spacing) {
   TinySceneOptions options;
@@ -17,6 +19,8 @@ TinySceneOptions OptionsOf(const BenchSize& size, double spacing) {
   options.width = size.width;
   options.height = size.height;
   options.texel_spacing_m = spacing;
+  options.tile_texels =
+      std::clamp(static_cast<int>(kTileSide / spacing), 1, 16);
   options.lattice_columns = 20;
   options.lattice_rows = 16;
   return options;

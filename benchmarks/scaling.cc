@@ -29,7 +29,8 @@ double ObservationBytes(const TextureProblem& problem) {
 double TexelBytes(const TextureProblem& problem, const ReconState& state) {
   const TexelSet& texels = problem.texels;
   return Bytes(texels.position) + Bytes(texels.plane) + Bytes(texels.face) +
-         Bytes(texels.bary) + Bytes(problem.views) + Bytes(state.colors);
+         Bytes(texels.bary) + Bytes(problem.views) + Bytes(problem.tiles) +
+         Bytes(state.colors);
 }
 
 void Measure(size_t observations, int keyframes, int repetitions) {

@@ -174,6 +174,10 @@ TinyScene MakeTinyScene(const TinySceneOptions& options) {
   }
   problem.raw_images = problem.images;
   AddTexels(options, &scene);
+  if (options.tile_texels > 0) {
+    problem.tiles = SortTexelsIntoTiles(
+        scene.planes, problem.anchors, options.tile_texels, &problem.texels);
+  }
   Observe(options, &scene);
   FinishTextureProblem(&problem);
   scene.truth = InitialState(problem, scene.planes);
