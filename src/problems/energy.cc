@@ -138,10 +138,9 @@ double InitialLambda1(const TextureProblem& problem,
                       const EnergyWeights& weights,
                       const ReconState& initial_state) {
   const EnergyTerms terms = EvaluateEnergy(problem, weights, initial_state);
-  size_t texels = 0;
-  for (const size_t n : problem.plane_texels) texels += n;
-  const double floor =
-      weights.texel_weight * static_cast<double>(texels) * 0.0005 * 0.0005;
+  double texels = 0;  // the last element of a moment counts its points
+  for (const Eigen::Matrix4d& moment : problem.moments) texels += moment(3, 3);
+  const double floor = weights.texel_weight * texels * 0.0005 * 0.0005;
   if (terms.e_c <= 0 || texels == 0) return 1e3;
   return terms.e_c / std::max(terms.e_p, floor);
 }

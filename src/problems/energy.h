@@ -8,7 +8,10 @@
 //   E_c  sum over observations of rho((I - C)^2), intensities in 0-1, times the
 //        texel weight (stride^2: as if the full texel grid took part) and 1 /
 //        channels; rho(s) = s but for the robust losses (costs/robust_loss.h)
-//   E_p  sum over observed texels of (n.p + w)^2 [m^2], times the texel weight
+//   E_p  sum over the texels of (n.p + w)^2 [m^2], times the texel weight: all
+//        texels of every plane that has an observation, seen themselves or not,
+//        as in the paper. Were it the seen ones only, a plane of a thousand
+//        texels of which three are seen could tilt freely.
 //   E_s  sum over control vertices of |f|^2 [px^2]
 //
 // No 1/2: all schedules and solvers are judged by this function, never by

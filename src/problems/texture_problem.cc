@@ -100,8 +100,17 @@ void CountViews(TextureProblem* problem) {
   for (const uint32_t id : problem->observations.texel) ++problem->views[id];
 }
 
-// Moments of the texels that take part, about the planes' anchors.
+void AddToMoment(const Eigen::Vector3f& position,
+                 const Eigen::Vector3d& anchor,
+                 Eigen::Matrix4d* moment) {
+  Eigen::Vector4d m;
+  m << position.cast<double>() - anchor, 1.0;
+  moment->noalias() += m * m.transpose();
+}
+
+// Moments of the texels of observed planes, about the planes' anchors.
 void BuildMoments(TextureProblem* problem) {
+  const TexelSet& texels = problem->texels;
   problem->moments.assign(problem->NumPlanes(), Eigen::Matrix4d::Zero());
   problem->plane_texels.assign(problem->NumPlanes(), 0);
   ParallelFor(0, problem->moments.size(), [&](size_t j) {
@@ -109,15 +118,20 @@ void BuildMoments(TextureProblem* problem) {
          t < problem->plane_tile_begin[j + 1]; ++t) {
       const TexelTile& tile = problem->tiles[t];
       for (size_t i = tile.texel_begin; i < tile.texel_end; ++i) {
-        if (problem->views[i] == 0) continue;
-        Eigen::Vector4d m;
-        m << problem->texels.position[i].cast<double>() - problem->anchors[j],
-            1.0;
-        problem->moments[j].noalias() += m * m.transpose();
-        ++problem->plane_texels[j];
+        AddToMoment(texels.position[i], problem->anchors[j],
+                    &problem->moments[j]);
+        problem->plane_texels[j] += problem->views[i] > 0 ? 1 : 0;
       }
     }
   });
+  for (size_t i = 0; i < texels.margin_position.size(); ++i) {
+    const int j = texels.margin_plane[i];
+    AddToMoment(texels.margin_position[i], problem->anchors[j],
+                &problem->moments[j]);
+  }
+  for (int j = 0; j < problem->NumPlanes(); ++j) {
+    if (problem->plane_texels[j] == 0) problem->moments[j].setZero();
+  }
 }
 
 void BuildGradients(TextureProblem* problem) {

@@ -71,7 +71,7 @@ struct TextureProblem {
   std::vector<size_t> plane_tile_begin;  // planes + 1: tiles of each plane
   std::vector<Eigen::Vector3d> anchors;  // of the planes, world [m]
   std::vector<Eigen::Matrix4d> moments;  // of costs/plane_moment.h, a plane
-  std::vector<size_t> plane_texels;      // active texels of each plane
+  std::vector<size_t> plane_texels;      // observed texels of each plane
   std::vector<uint16_t> views;           // keyframes that see each texel
   std::vector<DepthMoment> depth_moments;    // may be empty: no E_d
   std::vector<Pose> initial_cam_from_world;  // centre of the pose prior

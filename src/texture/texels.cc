@@ -95,13 +95,18 @@ TexelSet SampleChart(const TriMesh& mesh,
   for (int row = row0; row < chart.height - gutter; row += stride) {
     for (int col = col0; col < chart.width - gutter; col += stride) {
       const int face = owners[static_cast<size_t>(row) * chart.width + col];
-      if (face < 0 || near.at<uint8_t>(row, col) != 0) continue;
+      if (face < 0) continue;
       const Eigen::Vector2d b =
           UvBarycentrics(atlas.ChartUv(face), {col + 0.5, row + 0.5});
       const auto& f = mesh.faces[face];
       const Eigen::Vector3d p = (1 - b.x() - b.y()) * mesh.vertices[f[0]] +
                                 b.x() * mesh.vertices[f[1]] +
                                 b.y() * mesh.vertices[f[2]];
+      if (near.at<uint8_t>(row, col) != 0) {
+        texels.margin_position.push_back(p.cast<float>());
+        texels.margin_plane.push_back(chart.plane);
+        continue;
+      }
       texels.position.push_back(p.cast<float>());
       texels.plane.push_back(chart.plane);
       texels.face.push_back(face);
@@ -144,6 +149,8 @@ TexelSet SampleTexels(const TriMesh& mesh,
     Append(part.plane, &texels.plane);
     Append(part.face, &texels.face);
     Append(part.bary, &texels.bary);
+    Append(part.margin_position, &texels.margin_position);
+    Append(part.margin_plane, &texels.margin_plane);
   }
   return texels;
 }

@@ -25,6 +25,9 @@ struct TexelSet {
   std::vector<int> plane;                 // cluster id
   std::vector<int> face;
   std::vector<std::array<float, 2>> bary;  // b1, b2; b0 = 1 - b1 - b2
+  // Texels left out because of the edge margin: points of E_p only.
+  std::vector<Eigen::Vector3f> margin_position;
+  std::vector<int> margin_plane;
 
   size_t size() const { return position.size(); }
 };
@@ -32,6 +35,7 @@ struct TexelSet {
 // With a margin, texels near edges of the shape are left out: a fused mesh is
 // rounded there by about a voxel, so a texel would look at what lies behind the
 // edge. Cameras come out truer, but texture that lies near edges less sharp.
+// E_p keeps these texels: else planes narrower than the margin were free.
 struct TexelOptions {
   int stride = 1;  // every stride-th column and row; at least 1
   // Distance kept from sharp edges [m], 0 = off. Sharp are open edges, and

@@ -129,6 +129,43 @@ TEST(Energy, DoesNotChangeWhenKeyframesAreRenumbered) {
 }
 
 // lambda1 = E_c / E_p at the start (paper, Sec. 3.3), and its two edge cases.
+TEST(Energy, PlaneTermCountsAllTexelsOfSeenPlanes) {
+  // A plane of which one texel is seen is held by all its texels, those in the
+  // edge margin too; one that nobody sees by none. Breaks if only seen texels
+  // count: such a plane could then tilt freely.
+  TinyScene scene = MakeTinyScene();
+  TextureProblem& problem = scene.problem;
+  const int last = problem.NumPlanes() - 1;
+  std::vector<size_t> of_plane(problem.NumPlanes(), 0);
+  for (const int plane : problem.texels.plane) ++of_plane[plane];
+  Observations kept;
+  std::vector<bool> met(problem.NumPlanes(), false);
+  kept.begin.push_back(0);
+  for (int k = 0; k < problem.NumKeyframes(); ++k) {
+    for (size_t i = problem.observations.begin[k];
+         i < problem.observations.begin[k + 1];
+         ++i) {
+      const uint32_t id = problem.observations.texel[i];
+      const int plane = problem.texels.plane[id];
+      if (plane == last || met[plane]) continue;
+      met[plane] = true;
+      kept.texel.push_back(id);
+    }
+    kept.begin.push_back(kept.texel.size());
+  }
+  problem.observations = kept;
+  problem.texels.margin_position = {problem.texels.position[0]};
+  problem.texels.margin_plane = {0};
+  FinishTextureProblem(&problem);
+  for (int j = 0; j < last; ++j) {
+    EXPECT_EQ(problem.plane_texels[j], 1u);
+    EXPECT_EQ(problem.moments[j](3, 3),
+              static_cast<double>(of_plane[j] + (j == 0 ? 1 : 0)));
+  }
+  EXPECT_GT(of_plane[last], 0u);
+  EXPECT_EQ(problem.moments[last].norm(), 0);
+}
+
 TEST(Energy, InitialLambda1BalancesTheTerms) {
   TinyScene scene = MakeTinyScene();
   ReconState state = scene.truth;
@@ -145,10 +182,7 @@ TEST(Energy, InitialLambda1BalancesTheTerms) {
   PerturbPoses(0.005, 0.01, 1, &flat_state);
   const EnergyWeights flat_weights =
       StartFrom(&flat_state, &flat_scene.problem);
-  const size_t texels = static_cast<size_t>(
-      std::count_if(flat_scene.problem.views.begin(),
-                    flat_scene.problem.views.end(),
-                    [](uint16_t views) { return views > 0; }));
+  const size_t texels = flat_scene.problem.texels.size();  // all planes are seen
   const double e_c =
       EvaluateEnergy(flat_scene.problem, flat_weights, flat_state).e_c;
   EXPECT_NEAR(flat_weights.lambda1,

@@ -219,6 +219,10 @@ TEST(Texels, KeepAwayFromSharpEdgesOnly) {
   const Atlas atlas = BuildAtlas(scene.mesh, scene.partition, options);
   const TexelSet texels = SampleTexels(
       scene.mesh, scene.partition, atlas, {1, kMargin});
+  // What the margin takes from E_c stays in E_p.
+  EXPECT_EQ(texels.size() + texels.margin_position.size(),
+            SampleTexels(scene.mesh, scene.partition, atlas, {1, 0}).size());
+  EXPECT_EQ(texels.margin_position.size(), texels.margin_plane.size());
   double nearest_border = 1;
   for (size_t i = 0; i < texels.size(); ++i) {
     const Vector3d p = texels.position[i].cast<double>();
