@@ -184,6 +184,10 @@ DEFINE_double(stop_decrease,
 DEFINE_double(smoothing,
               PhotometricOptions().smoothing_sigma_px,
               "Gaussian on the grey images [px]");
+DEFINE_bool(exposure,
+            PhotometricOptions().exposure,
+            "bring the keyframes to a common exposure first: a gain and an "
+            "offset a keyframe and channel");
 DEFINE_int32(warp_columns,
              PhotometricOptions().warp_columns,
              "control vertices of the image warp across (paper: 20)");
@@ -263,6 +267,10 @@ DEFINE_double(
     bake_robust_luma,
     BakeOptions().robust_luma,
     "final colours: drop samples this far from the median (0-1), 0 = keep all");
+DEFINE_double(bake_local_exposure,
+              BakeOptions().local_exposure,
+              "final colours: 0 = one exposure everywhere, 1 = that of the "
+              "images that see a texel");
 DEFINE_string(bake_sampler, "bilinear", "final colours: bilinear or bicubic");
 
 namespace facet {
@@ -317,6 +325,7 @@ void CheckNumbers() {
       {"bake_sharpness_power", 0, 100},
       {"bake_best_view_power", 0, 1000, true},
       {"bake_robust_luma", 0, kMax},
+      {"bake_local_exposure", 0, 1},
   });
 }
 
@@ -369,6 +378,7 @@ void TextureOptions(ReconstructOptions* o) {
   b.sharpness_power = FLAGS_bake_sharpness_power;
   b.best_view_power = FLAGS_bake_best_view_power;
   b.robust_luma = FLAGS_bake_robust_luma;
+  b.local_exposure = FLAGS_bake_local_exposure;
   b.sampler = Choose("bake_sampler", FLAGS_bake_sampler) == 0
                   ? BakeSampler::kBilinear
                   : BakeSampler::kBicubic;
@@ -381,6 +391,7 @@ void SolverOptions(ReconstructOptions* o) {
   p.levels = FLAGS_levels;
   p.stop.relative_decrease = FLAGS_stop_decrease;
   p.smoothing_sigma_px = FLAGS_smoothing;
+  p.exposure = FLAGS_exposure;
   p.warp_columns = FLAGS_warp_columns;
   p.warp_rows = FLAGS_warp_rows;
   p.weights.lambda2 = FLAGS_lambda2;
@@ -459,6 +470,7 @@ std::string ProfileFlags(const std::string& name) {
          "--schedule=10x[C; Phi; T+F]\n"
          "--stop_decrease=0\n"
          "--smoothing=0\n"
+         "--noexposure\n"
          "--depth_weight=0\n"
          "--edge_margin=0\n"
          "--gauge=none\n"

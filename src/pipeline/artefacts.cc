@@ -257,6 +257,14 @@ void Save(const ReconstructOptions& options,
   writer.Add("warps", artefact.warps);
   const WarpLattice& l = artefact.lattice;
   writer.Add("lattice", std::vector<int>{l.columns, l.rows, l.width, l.height});
+  std::vector<float> exposures;
+  for (const Exposure& exposure : artefact.exposures) {
+    exposures.insert(
+        exposures.end(), exposure.gain.data(), exposure.gain.data() + 3);
+    exposures.insert(
+        exposures.end(), exposure.offset.data(), exposure.offset.data() + 3);
+  }
+  writer.Add("exposures", exposures);
   writer.Add("plane_texels", artefact.plane_texels);
   writer.Add("plane_frames", artefact.plane_frames);
   Write(options, Stage::kPhotometric, artefact, &writer);
@@ -278,6 +286,12 @@ PhotometricArtefact LoadPhotometricArtefact(const ReconstructOptions& options) {
   const std::vector<int> lattice = reader.Get<int>("lattice");
   artefact.lattice = {
       lattice.at(0), lattice.at(1), lattice.at(2), lattice.at(3)};
+  const std::vector<float> exposures = reader.Get<float>("exposures");
+  for (size_t i = 0; i + 6 <= exposures.size(); i += 6) {
+    artefact.exposures.push_back(
+        {Eigen::Map<const Eigen::Array3f>(exposures.data() + i),
+         Eigen::Map<const Eigen::Array3f>(exposures.data() + i + 3)});
+  }
   artefact.plane_texels = reader.Get<size_t>("plane_texels");
   artefact.plane_frames = reader.Get<size_t>("plane_frames");
   GetRecord(reader, &artefact);

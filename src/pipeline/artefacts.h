@@ -42,6 +42,7 @@ struct PhotometricArtefact : StageRecord {
   std::vector<Plane> planes;
   std::vector<double> warps;  // empty = none
   WarpLattice lattice;
+  std::vector<Exposure> exposures;  // a keyframe; empty = as taken
   std::vector<size_t> plane_texels, plane_frames;
 };
 

@@ -72,6 +72,7 @@ json PhotometricSettings(const ReconstructOptions& o) {
           {"stride", p.stride},
           {"max_observations", p.max_observations},
           {"smoothing_sigma_px", p.smoothing_sigma_px},
+          {"exposure", p.exposure},
           {"warp_columns", p.warp_columns},
           {"warp_rows", p.warp_rows},
           {"levels", p.levels},
@@ -129,6 +130,7 @@ json ExportSettings(const ReconstructOptions& o) {
           {"sharpness_power", o.bake.sharpness_power},
           {"best_view_power", o.bake.best_view_power},
           {"robust_luma", o.bake.robust_luma},
+          {"local_exposure", o.bake.local_exposure},
           {"sampler", static_cast<int>(o.bake.sampler)},
           {"inpaint", o.bake.inpaint}};
 }

@@ -100,6 +100,7 @@ TexturedMesh MakeModel(const ExportInput& input,
 
 TexturedMesh Bake(const ReconstructOptions& options,
                   const ExportInput& input,
+                  const KeyframeImages& images,
                   const TriMesh& mesh,
                   const std::vector<Plane>& planes,
                   const std::vector<Pose>& cam_from_world,
@@ -109,7 +110,7 @@ TexturedMesh Bake(const ReconstructOptions& options,
   return MakeModel(
       input, mesh,
       BakeTexture(mesh, planes, input.atlas, scene, input.sequence,
-                  input.keyframes, input.images, cam_from_world,
+                  input.keyframes, images, cam_from_world,
                   input.photometric.lattice, warps, options.visibility,
                   options.bake, report));
 }
@@ -146,8 +147,10 @@ void WritePreviews(const ReconstructOptions& options,
   DrawWireframe(dir, views, input.final_mesh,
                 input.simplified.partition.face_cluster);
   DrawTextured(dir, "after", views, model);
+  KeyframeImages as_taken = input.images;
+  as_taken.exposures.clear();
   const TexturedMesh before =
-      Bake(options, input, input.simplified.mesh, input.initial_planes,
+      Bake(options, input, as_taken, input.simplified.mesh, input.initial_planes,
            input.initial_cam_from_world, {}, nullptr);
   DrawTextured(dir, "before", views, before);
 }
@@ -167,7 +170,7 @@ json ExportRun(const ReconstructOptions& options, const ExportInput& input) {
 
   BakeReport bake;
   const TexturedMesh model = Bake(
-      options, input, input.final_mesh, input.photometric.planes,
+      options, input, input.images, input.final_mesh, input.photometric.planes,
       input.photometric.cam_from_world, input.photometric.warps, &bake);
   ExportObj(dir, model);
   ExportGlb(dir + "/mesh.glb", model);

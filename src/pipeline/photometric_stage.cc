@@ -50,6 +50,24 @@ std::string PhaseLine(const std::string& round,
   return line;
 }
 
+// Observations that the exposures are calibrated from, at most: they are means
+// over large areas.
+constexpr size_t kExposureSamples = 1000000;
+
+std::string ExposureLine(const ExposureCalibration& exposure) {
+  char line[200];
+  std::snprintf(line,
+                sizeof(line),
+                "  exposures: a grey of 0.5 becomes %.2f to %.2f; rms of colours "
+                "about their means %.2f -> %.2f of 255, %zu samples",
+                exposure.min_grey,
+                exposure.max_grey,
+                exposure.rms_before,
+                exposure.rms_after,
+                exposure.samples);
+  return line;
+}
+
 struct Sampled {
   TexelSet texels;
   std::vector<TexelTile> tiles;
@@ -114,7 +132,8 @@ class Level {
   void AddChannels(double sigma) {
     channels_.resize(images_.size());
     ParallelFor(0, channels_.size(), [&](size_t k) {
-      channels_[k] = SmoothChannels(images_.rgb[k], sigma);
+      channels_[k] =
+          SmoothChannels(images_.rgb[k], images_.ExposureOf(k), sigma);
     });
     problem_.more_images.resize(2);
     for (size_t k = 0; k < channels_.size(); ++k) {
@@ -244,9 +263,9 @@ PhotometricResult RunPhotometricStage(
     const RgbdSequence& sequence,
     const std::vector<int>& keyframes,
     const std::vector<Pose>& cam_from_world,
-    const KeyframeImages& images,
     const VisibilityOptions& visibility,
     const PhotometricOptions& options,
+    KeyframeImages* keyframe_images,
     const std::function<void(const std::string&)>& print) {
   PhotometricResult result;
   const RayScene scene(mesh);
@@ -271,6 +290,21 @@ PhotometricResult RunPhotometricStage(
     CheckObserved(s.observations, s.counts, static_cast<int>(keyframes.size()));
     return s;
   };
+  if (options.exposure) {
+    const Sampled coarse = sample(ChooseStride(sample, kExposureSamples));
+    result.exposure = CalibrateExposures(coarse.texels,
+                                         coarse.observations,
+                                         planes,
+                                         sequence.calibration().color,
+                                         cam_from_world,
+                                         *keyframe_images,
+                                         options.exposure_calibration);
+    SetExposures(result.exposure.exposures,
+                 options.smoothing_sigma_px,
+                 keyframe_images);
+    print(ExposureLine(result.exposure));
+  }
+  const KeyframeImages& images = *keyframe_images;
   result.stride = options.stride > 0
                       ? options.stride
                       : ChooseStride(sample, options.max_observations);
@@ -306,6 +340,7 @@ PhotometricResult RunPhotometricStage(
   EnergyWeights weights = options.weights;
   weights.texel_weight = result.stride * result.stride;
   weights.lambda1 = InitialLambda1(problem, weights, state);
+  if (getenv("FACET_L1")) weights.lambda1 *= atof(getenv("FACET_L1"));
   result.lambda1 = weights.lambda1;
   weights.prior.scale = InitialPriorScale(problem, weights, state);
 

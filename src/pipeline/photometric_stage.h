@@ -12,6 +12,7 @@
 
 #include "mesh/planar_partition.h"
 #include "mesh/tri_mesh.h"
+#include "problems/exposure_calibration.h"
 #include "problems/texture_problem.h"
 #include "rgbd/sequence.h"
 #include "schedule/run_schedule.h"
@@ -38,6 +39,10 @@ struct PhotometricOptions {
   // Joint solves of poses and colours first, without warp, then the warps: the
   // measured best on real scans. The paper: 10x[C; Phi; T+F].
   std::string schedule = "4x[Phi; C+T]; 5x[C; Phi; F]";
+  // Bring the keyframes to a common exposure first (texture/exposure.h); off in
+  // the paper.
+  bool exposure = true;
+  ExposureOptions exposure_calibration;
   StopRule stop;
   Formulation formulation;
   SolverConfig solver;
@@ -50,6 +55,7 @@ struct PhotometricResult {
   std::vector<double> warps;  // empty if all are zero
   WarpLattice lattice;
   EnergyTerms initial, final_terms;
+  ExposureCalibration exposure;  // no exposures: not calibrated
   double lambda1 = 0;
   int stride = 0;
   size_t texels = 0, texels_observed = 0;
@@ -60,7 +66,8 @@ struct PhotometricResult {
 };
 
 // `planes` are the initial planes, one a cluster. `cam_from_world` are the
-// initial poses of the colour camera, one a keyframe. Prints the fixed-width
+// initial poses of the colour camera, one a keyframe. The exposures of `images`
+// are set if they are calibrated. Prints the fixed-width
 // table of the phases through `print` (one line a call).
 PhotometricResult RunPhotometricStage(
     const TriMesh& mesh,
@@ -70,9 +77,9 @@ PhotometricResult RunPhotometricStage(
     const RgbdSequence& sequence,
     const std::vector<int>& keyframes,
     const std::vector<Pose>& cam_from_world,
-    const KeyframeImages& images,
     const VisibilityOptions& visibility,
     const PhotometricOptions& options,
+    KeyframeImages* keyframe_images,
     const std::function<void(const std::string&)>& print);
 
 }  // namespace facet

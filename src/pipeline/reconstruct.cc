@@ -241,6 +241,11 @@ class Run {
     images_ = LoadKeyframeImages(*sequence_,
                                  keyframes_.keyframes,
                                  options_.photometric.smoothing_sigma_px);
+    if (!photometric_.exposures.empty()) {
+      SetExposures(photometric_.exposures,
+                   options_.photometric.smoothing_sigma_px,
+                   &images_);
+    }
     atlas_ =
         BuildAtlas(simplified_.mesh, simplified_.partition, options_.atlas);
     if (options_.plane_init == PlaneInit::kSimplified) {
@@ -277,9 +282,9 @@ class Run {
                                                          *sequence_,
                                                          keyframes_.keyframes,
                                                          initial_poses_,
-                                                         images_,
                                                          options_.visibility,
                                                          options_.photometric,
+                                                         &images_,
                                                          PrintLine);
     WriteFileAtomically(options_.output_path + "/trace.csv",
                         TraceCsv(result.trace));
@@ -291,6 +296,7 @@ class Run {
     photometric_.planes = result.planes;
     photometric_.warps = result.warps;
     photometric_.lattice = result.lattice;
+    photometric_.exposures = result.exposure.exposures;
     photometric_.plane_texels = result.plane_texels;
     photometric_.plane_frames = result.plane_frames;
     const RigidMotion slide =

@@ -39,14 +39,19 @@ std::unique_ptr<RgbdSequence> OpenSequence(const std::string& path,
   return OpenBundleFusionFolder(path, options);
 }
 
-cv::Mat LumaFromRgb(const cv::Mat& rgb) {
+cv::Mat LumaFromRgb(const cv::Mat& rgb,
+                    const Eigen::Array3f& gain,
+                    const Eigen::Array3f& offset) {
   cv::Mat luma(rgb.size(), CV_32F);
-  constexpr float kR = 0.299f / 255, kG = 0.587f / 255, kB = 0.114f / 255;
+  const Eigen::Array3f weights(0.299f, 0.587f, 0.114f);
+  const float base = (weights * offset).sum();
+  const float r = weights[0] / 255 * gain[0], g = weights[1] / 255 * gain[1],
+              b = weights[2] / 255 * gain[2];
   for (int y = 0; y < rgb.rows; ++y) {
     const uint8_t* in = rgb.ptr<uint8_t>(y);
     float* out = luma.ptr<float>(y);
     for (int x = 0; x < rgb.cols; ++x) {
-      out[x] = kR * in[3 * x] + kG * in[3 * x + 1] + kB * in[3 * x + 2];
+      out[x] = r * in[3 * x] + g * in[3 * x + 1] + b * in[3 * x + 2] + base;
     }
   }
   return luma;

@@ -193,6 +193,7 @@ class Baker {
     const Vector3f translation = pose.translation.cast<float>();
     const Vector3f center = pose.CenterInSource().cast<float>();
     const cv::Mat& rgb = images_.rgb[view.keyframe];
+    const Exposure exposure = images_.ExposureOf(view.keyframe);
     const double* warp =
         warps_.empty()
             ? nullptr
@@ -220,9 +221,10 @@ class Baker {
       }
       if (chart.steep) normal = Normal(chart, i);
       const float cosine = normal.dot((center - texels_.q[i]).normalized());
-      sample.rgb = options_.sampler == BakeSampler::kBilinear
-                       ? BilinearRgb(rgb, u.x(), u.y())
-                       : BicubicRgb(rgb, u.x(), u.y());
+      sample.rgb = exposure.Corrected(
+          options_.sampler == BakeSampler::kBilinear
+              ? BilinearRgb(rgb, u.x(), u.y())
+              : BicubicRgb(rgb, u.x(), u.y()));
       sample.weight =
           Weight(std::abs(cosine), y.z(), sharpness_[view.keyframe], u);
     }
@@ -254,8 +256,18 @@ class Baker {
                                     static_cast<float>(options_.robust_luma),
                                     &samples);
     }
-    const std::vector<ColorSample> mean = WeightedMean(
+    std::vector<ColorSample> mean = WeightedMean(
         samples, n, views.size(), static_cast<float>(options_.best_view_power));
+    if (options_.local_exposure > 0 && !images_.exposures.empty()) {
+      std::vector<Exposure> exposures;
+      for (const TileView& view : views) {
+        exposures.push_back(images_.ExposureOf(view.keyframe));
+      }
+      UndoExposures(samples,
+                    exposures,
+                    static_cast<float>(options_.local_exposure),
+                    &mean);
+    }
     for (size_t i = 0; i < n; ++i) {
       if (!(mean[i].weight > 0)) continue;
       colors_[tile.begin + i] = mean[i].rgb;
@@ -309,6 +321,9 @@ std::vector<cv::Mat> BakeTexture(const TriMesh& mesh,
     throw OptionsError(
         "powers of the texture weights must not be negative, and the best-view "
         "power must be positive");
+  }
+  if (!(options.local_exposure >= 0 && options.local_exposure <= 1)) {
+    throw OptionsError("the share of the local exposure must be in 0 to 1");
   }
   return Baker(mesh,
                planes,

@@ -43,6 +43,11 @@ struct BakeOptions {
   double border_feather_px = 40;  // width of the ramp f; 0 = none
   // Drop samples with a larger |luma - median|, intensities 0 to 1; 0 = keep all.
   double robust_luma = 0;
+  // Brightness of the texture, if the keyframes have exposures: 0 = the common
+  // one everywhere, 1 = of every texel the mean of those under which it was
+  // seen, which is nearer to the photos but changes where one image ends. The
+  // colours are averaged at the common exposure in any case.
+  double local_exposure = 0.5;
   // Texels that no keyframe sees by the tests of VisibilityOptions take colours
   // from those that pass the milder FrameView::MaySee.
   bool mild_fallback = true;

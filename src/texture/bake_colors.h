@@ -28,6 +28,14 @@ std::vector<ColorSample> WeightedMean(const std::vector<ColorSample>& samples,
                                       size_t num_views,
                                       float power);
 
+// Takes each mean the given share of the way from the common exposure back to
+// those of its samples: to their weighted mean of (C - offset) / gain.
+// `exposures` are those of the views.
+void UndoExposures(const std::vector<ColorSample>& samples,
+                   const std::vector<Exposure>& exposures,
+                   float share,
+                   std::vector<ColorSample>* means);
+
 // Sets the weight of samples to 0 whose luma (0-1) is farther than `limit` from
 // the weighted median of their texel. Returns how many of the first `owned`
 // texels these were.

@@ -19,14 +19,29 @@ cv::Mat Smooth(const cv::Mat& image, double sigma) {
 
 }  // namespace
 
-std::array<cv::Mat, 3> SmoothChannels(const cv::Mat& rgb, double sigma) {
+std::array<cv::Mat, 3> SmoothChannels(const cv::Mat& rgb,
+                                      const Exposure& exposure,
+                                      double sigma) {
   std::array<cv::Mat, 3> channels;
   cv::split(rgb, channels.data());
-  for (cv::Mat& channel : channels) {
-    channel.convertTo(channel, CV_32F, 1.0 / 255);
-    channel = Smooth(channel, sigma);
+  for (int c = 0; c < 3; ++c) {
+    channels[c].convertTo(
+        channels[c], CV_32F, exposure.gain[c] / 255.0, exposure.offset[c]);
+    channels[c] = Smooth(channels[c], sigma);
   }
   return channels;
+}
+
+void SetExposures(const std::vector<Exposure>& exposures,
+                  double sigma,
+                  KeyframeImages* images) {
+  images->exposures = exposures;
+  ParallelFor(0, images->size(), [&](size_t k) {
+    const Exposure exposure = images->ExposureOf(k);
+    images->luma[k] =
+        LumaFromRgb(images->rgb[k], exposure.gain, exposure.offset);
+    images->smooth[k] = Smooth(images->luma[k], sigma);
+  });
 }
 
 KeyframeImages LoadKeyframeImages(const RgbdSequence& sequence,
@@ -48,6 +63,7 @@ KeyframeImages PyramidLevel(const KeyframeImages& images,
                             int level,
                             double sigma) {
   KeyframeImages reduced;
+  reduced.exposures = images.exposures;
   const size_t n = images.size();
   reduced.rgb.resize(n);
   reduced.luma.resize(n);

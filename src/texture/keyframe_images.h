@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "rgbd/sequence.h"
+#include "texture/exposure.h"
 
 namespace facet {
 
@@ -18,13 +19,26 @@ struct KeyframeImages {
   std::vector<cv::Mat> rgb;     // CV_8UC3, RGB order
   std::vector<cv::Mat> luma;    // CV_32F in [0, 1], unsmoothed
   std::vector<cv::Mat> smooth;  // luma after a Gaussian of `sigma` px
+  // `luma` and `smooth` have these applied, `rgb` is as taken. May be empty: all
+  // as taken.
+  std::vector<Exposure> exposures;
 
   size_t size() const { return rgb.size(); }
+  Exposure ExposureOf(size_t keyframe) const {
+    return exposures.empty() ? Exposure() : exposures[keyframe];
+  }
 };
 
-// The red, green and blue images of a keyframe as floats in [0, 1], after a
-// Gaussian of `sigma` px.
-std::array<cv::Mat, 3> SmoothChannels(const cv::Mat& rgb, double sigma);
+// The red, green and blue images of a keyframe as floats, nominally in [0, 1],
+// with the exposure applied, after a Gaussian of `sigma` px.
+std::array<cv::Mat, 3> SmoothChannels(const cv::Mat& rgb,
+                                      const Exposure& exposure,
+                                      double sigma);
+
+// Sets the exposures, one a keyframe or none, and makes luma and smooth anew.
+void SetExposures(const std::vector<Exposure>& exposures,
+                  double sigma,
+                  KeyframeImages* images);
 
 // `keyframes` are indices into sequence.frames(). sigma = 0: smooth = luma
 // (shared, not copied). Throws InputError when an image does not decode.

@@ -73,13 +73,15 @@ class Wall {
 
   std::vector<cv::Mat> Bake(const std::vector<double>& warps = {}) {
     const auto frames = sequence.AllFrames();
+    KeyframeImages images = LoadKeyframeImages(sequence, frames, 0);
+    SetExposures(exposures, 0, &images);
     return BakeTexture(scene.mesh,
                        scene.Planes(),
                        atlas,
                        RayScene(scene.mesh),
                        sequence,
                        frames,
-                       LoadKeyframeImages(sequence, frames, 0),
+                       images,
                        sequence.AllPoses(),
                        lattice,
                        warps,
@@ -125,6 +127,7 @@ class Wall {
   MemorySequence sequence;
   VisibilityOptions visibility;
   BakeOptions options;
+  std::vector<Exposure> exposures;
   WarpLattice lattice;
   BakeReport report;
 };
@@ -340,6 +343,48 @@ TEST(Bake, SteepFacesAreColouredWhereTheyAre) {
     }
   }
   EXPECT_GT(checked, 500u);
+}
+
+TEST(Bake, ExposuresAreTakenOutAndPutBack) {
+  // Two cameras see the paint each under an exposure of its own. At the common
+  // exposure the page is the paint, with all of the local one the mean of what
+  // they saw. Breaks if an exposure is applied twice, or its inverse.
+  Wall wall(0);
+  Exposure dark, light;  // undo what the cameras do
+  dark.gain.setConstant(1.1f);
+  dark.offset.setConstant(-0.05f);
+  light.gain.setConstant(0.95f);
+  light.offset.setConstant(0.02f);
+  wall.exposures = {dark, light};
+  const auto seen = [](const Exposure& undo, const Vector3d& paint) {
+    return Vector3d(
+        (paint.array() - 255.0 * undo.offset.cast<double>()) /
+        undo.gain.cast<double>());
+  };
+  for (const Exposure& undo : wall.exposures) {
+    wall.sequence.AddRendered(
+        wall.WideWall(), Pose(), [&](const Vector3d& x) -> cv::Vec3b {
+          const Vector3d c = seen(undo, Paint(x));
+          return {cv::saturate_cast<uint8_t>(c[0]),
+                  cv::saturate_cast<uint8_t>(c[1]),
+                  cv::saturate_cast<uint8_t>(c[2])};
+        });
+  }
+  wall.options.local_exposure = 0;
+  EXPECT_LT(wall.LargestError(wall.Bake()[0], 0), 2);
+  const cv::Mat common = wall.Bake()[0];
+  wall.options.local_exposure = 1;
+  const cv::Mat local = wall.Bake()[0];
+  const Chart& chart = wall.atlas.charts[0];
+  for (int i = 10; i < std::min(chart.width, chart.height) - 10; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      const Vector3d paint = Vector3d::Constant(
+          common.at<cv::Vec3b>(chart.y + i, chart.x + i)[k]);
+      EXPECT_NEAR(local.at<cv::Vec3b>(chart.y + i, chart.x + i)[k],
+                  0.5 * (seen(dark, paint) + seen(light, paint))[0],
+                  1.6);
+    }
+  }
 }
 
 TEST(Bake, SameAtAnyThreadCount) {
