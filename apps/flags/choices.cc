@@ -30,6 +30,7 @@ std::vector<FlagChoices> MakeTable() {
       {"linear_solver", {"cholesky", "cgnr"}, true},
       {"levels", {}, true},
       {"gauge_strength", {}, true},
+      {"lambda1_share", {}, true},
       {"lambda2", {}, true},
       {"smoothing", {}, true},
       {"warp_columns", {}, true},

@@ -194,6 +194,9 @@ DEFINE_int32(warp_columns,
 DEFINE_int32(warp_rows,
              PhotometricOptions().warp_rows,
              "control vertices of the image warp down (paper: 16)");
+DEFINE_double(lambda1_share,
+              EnergyWeights().lambda1_share,
+              "weight of E_p as a share of the paper's E_c / E_p at the start");
 DEFINE_double(lambda2,
               EnergyWeights().lambda2,
               "weight of the warp's size E_s (paper: 0.1)");
@@ -309,6 +312,7 @@ void CheckNumbers() {
       {"smoothing", 0, 100},
       {"warp_columns", 2, 100},
       {"warp_rows", 2, 100},
+      {"lambda1_share", 0, kMax, true},
       {"lambda2", 0, kMax, true},
       {"loss_scale", 0, 255, true},
       {"gauge_sigma_mm", 0, kMax, true},
@@ -394,6 +398,7 @@ void SolverOptions(ReconstructOptions* o) {
   p.exposure = FLAGS_exposure;
   p.warp_columns = FLAGS_warp_columns;
   p.warp_rows = FLAGS_warp_rows;
+  p.weights.lambda1_share = FLAGS_lambda1_share;
   p.weights.lambda2 = FLAGS_lambda2;
   const auto gauge = static_cast<Gauge>(Choose("gauge", FLAGS_gauge));
   p.solver.remove_common_motion = gauge == Gauge::kMean;
@@ -475,6 +480,7 @@ std::string ProfileFlags(const std::string& name) {
          "--edge_margin=0\n"
          "--gauge=none\n"
          "--plane=raw4\n"
+         "--lambda1_share=1\n"
          "--lambda2=0.1\n"
          "--geometry_iterations=1\n"
          "--geometry_freedom=none\n"

@@ -93,6 +93,7 @@ json PhotometricSettings(const ReconstructOptions& o) {
           {"joint_method", static_cast<int>(p.solver.joint_method)},
           {"joint_linear_solver",
            static_cast<int>(p.solver.joint_linear_solver)},
+          {"lambda1_share", p.weights.lambda1_share},
           {"lambda2", p.weights.lambda2},
           {"remove_common_motion", p.solver.remove_common_motion},
           {"pose_prior", p.weights.pose_prior},

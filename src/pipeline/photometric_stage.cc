@@ -340,7 +340,6 @@ PhotometricResult RunPhotometricStage(
   EnergyWeights weights = options.weights;
   weights.texel_weight = result.stride * result.stride;
   weights.lambda1 = InitialLambda1(problem, weights, state);
-  if (getenv("FACET_L1")) weights.lambda1 *= atof(getenv("FACET_L1"));
   result.lambda1 = weights.lambda1;
   weights.prior.scale = InitialPriorScale(problem, weights, state);
 

@@ -142,7 +142,7 @@ double InitialLambda1(const TextureProblem& problem,
   for (const Eigen::Matrix4d& moment : problem.moments) texels += moment(3, 3);
   const double floor = weights.texel_weight * texels * 0.0005 * 0.0005;
   if (terms.e_c <= 0 || texels == 0) return 1e3;
-  return terms.e_c / std::max(terms.e_p, floor);
+  return weights.lambda1_share * terms.e_c / std::max(terms.e_p, floor);
 }
 
 double InitialPriorScale(const TextureProblem& problem,

@@ -29,6 +29,9 @@ namespace facet {
 
 struct EnergyWeights {
   double lambda1 = 0;       // set by InitialLambda1
+  // Share of the paper's balance: 1 holds planes to the mesh as if all of E_c at
+  // the start were noise. Where poses are far off most of it is not.
+  double lambda1_share = 1;
   double lambda2 = 0.1;     // paper
   double texel_weight = 1;  // stride^2
   bool pose_prior = true;
@@ -76,8 +79,9 @@ double EvaluateDepthTerm(const TextureProblem& problem,
                          const EnergyWeights& weights,
                          const ReconState& state);
 
-// lambda1 = E_c / E_p at the initial state (paper, Sec. 3.3), with E_p floored
-// at (0.5 mm)^2 a texel; 1e3 when E_c is 0 (method, Sec. 7.4).
+// lambda1 = lambda1_share E_c / E_p at the initial state (paper, Sec. 3.3: share
+// 1), with E_p floored at (0.5 mm)^2 a texel; 1e3 when E_c is 0 (method, Sec.
+// 7.4).
 double InitialLambda1(const TextureProblem& problem,
                       const EnergyWeights& weights,
                       const ReconState& initial_state);
