@@ -29,11 +29,17 @@ namespace facet {
 class ExposureConsistencyCost : public ceres::CostFunction {
  public:
   // `hessian` is H, 2 K x 2 K, symmetric and positive semidefinite; the lower
-  // triangle is read.
+  // triangle is read. eps is 1e-12 of its largest element, more where rounding
+  // asks for it.
   explicit ExposureConsistencyCost(Eigen::MatrixXd hessian) {
-    const double eps = 1e-12 * hessian.diagonal().maxCoeff();
-    hessian.diagonal().array() += eps;
-    factor_ = hessian.llt().matrixU();
+    Eigen::LLT<Eigen::MatrixXd> llt;
+    double eps = 1e-12 * hessian.diagonal().maxCoeff() + 1e-300;
+    do {  // rounding can leave a singular H below zero
+      hessian.diagonal().array() += eps;
+      llt.compute(hessian);
+      eps *= 10;
+    } while (llt.info() != Eigen::Success);
+    factor_ = llt.matrixU();
     set_num_residuals(static_cast<int>(factor_.rows()));
     mutable_parameter_block_sizes()->assign(factor_.rows() / 2, 2);
   }

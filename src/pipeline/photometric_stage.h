@@ -66,9 +66,9 @@ struct PhotometricResult {
 };
 
 // `planes` are the initial planes, one a cluster. `cam_from_world` are the
-// initial poses of the colour camera, one a keyframe. The exposures of `images`
-// are set if they are calibrated. Prints the fixed-width
-// table of the phases through `print` (one line a call).
+// initial poses of the colour camera, one a keyframe. The exposures of
+// `keyframe_images` are set if they are calibrated. Prints the fixed-width table
+// of the phases through `print` (one line a call).
 PhotometricResult RunPhotometricStage(
     const TriMesh& mesh,
     const PlanarPartition& partition,

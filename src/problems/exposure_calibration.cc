@@ -9,10 +9,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "costs/exposure_cost.h"
 #include "texture/rgb_sampler.h"
 #include "util/parallel_for.h"
+#include "util/warnings.h"
 
 namespace facet {
 namespace {
@@ -167,7 +169,27 @@ ChannelExposures Solve(const ChannelForm& form, const ExposureOptions& options) 
   solver.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem, &summary);
+  if (!summary.IsSolutionUsable()) {
+    AddWarning("exposures: no solution, the keyframes stay as taken");
+    exposures.assign(exposures.size(), {1, 0});
+  }
   return exposures;
+}
+
+// Keyframes with an impossible gain in any channel stay as taken.
+void DropImpossible(double max_gain, std::vector<Exposure>* exposures) {
+  size_t dropped = 0;
+  for (Exposure& exposure : *exposures) {
+    const bool possible =
+        exposure.gain.minCoeff() >= static_cast<float>(1 / max_gain) &&
+        exposure.gain.maxCoeff() <= static_cast<float>(max_gain);
+    if (possible) continue;
+    exposure = Exposure();
+    ++dropped;
+  }
+  if (dropped == 0) return;
+  AddWarning("exposures: " + std::to_string(dropped) +
+             " keyframes do not fit what the others see and stay as taken");
 }
 
 // Sum of (a I + b - C)^2 over the samples of a channel.
@@ -193,20 +215,27 @@ ExposureCalibration CalibrateExposures(const TexelSet& texels,
       texels, observations, planes, camera, cam_from_world, images, options);
   ExposureCalibration result;
   result.exposures.resize(images.size());
-  std::array<double, 3> count{}, before{}, after{};
+  std::array<ChannelForm, 3> forms;
   ParallelFor(0, 3, [&](size_t c) {
-    const ChannelForm form =
-        MakeForm(table, images.size(), static_cast<int>(c));
-    const ChannelExposures exposures = Solve(form, options);
-    for (const double n : form.count) count[c] += n;
-    before[c] =
-        SumOfSquares(form, ChannelExposures(images.size(), {1.0, 0.0}));
-    after[c] = SumOfSquares(form, exposures);
+    forms[c] = MakeForm(table, images.size(), static_cast<int>(c));
+    const ChannelExposures exposures = Solve(forms[c], options);
     for (size_t k = 0; k < images.size(); ++k) {
       result.exposures[k].gain[c] = static_cast<float>(exposures[k][0]);
       result.exposures[k].offset[c] = static_cast<float>(exposures[k][1]);
     }
   });
+  DropImpossible(options.max_gain, &result.exposures);
+  std::array<double, 3> count{}, before{}, after{};
+  for (int c = 0; c < 3; ++c) {
+    ChannelExposures exposures(images.size(), {1.0, 0.0});
+    before[c] = SumOfSquares(forms[c], exposures);
+    for (size_t k = 0; k < images.size(); ++k) {
+      exposures[k] = {result.exposures[k].gain[c],
+                      result.exposures[k].offset[c]};
+    }
+    after[c] = SumOfSquares(forms[c], exposures);
+    for (const double n : forms[c].count) count[c] += n;
+  }
   const double total = count[0] + count[1] + count[2];
   if (total == 0) return result;
   result.samples = static_cast<size_t>(total / 3);

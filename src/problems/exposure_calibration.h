@@ -25,6 +25,9 @@ struct ExposureOptions {
   // `noise`, whose exposure strays by these standard deviations from (1, 0).
   double prior_observations = 100;
   double gain_sigma = 0.2, offset_sigma = 0.1, noise = 0.05;
+  // No camera does more; a gain beyond [1 / max_gain, max_gain] says that the
+  // keyframe's pose or image is wrong, and the keyframe stays as taken.
+  double max_gain = 4;
 };
 
 struct ExposureCalibration {
@@ -38,7 +41,8 @@ struct ExposureCalibration {
 };
 
 // Colours are looked up at the plane points q. Of a texel seen by fewer than two
-// keyframes nothing is learnt. Same result at any number of threads.
+// keyframes nothing is learnt. Warns of keyframes with an impossible gain, and
+// leaves all as taken, with a warning, if there is no solution. Same result at any number of threads.
 ExposureCalibration CalibrateExposures(const TexelSet& texels,
                                        const Observations& observations,
                                        const std::vector<Plane>& planes,

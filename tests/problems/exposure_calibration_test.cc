@@ -159,19 +159,22 @@ Wall MakeWall(int num_keyframes) {
   return wall;
 }
 
+ExposureCalibration Calibrate(const Wall& wall) {
+  return CalibrateExposures(wall.texels,
+                            wall.observations,
+                            wall.planes,
+                            wall.camera,
+                            wall.poses,
+                            wall.images,
+                            ExposureOptions());
+}
+
 // The exposures found undo those of the cameras but for what is common to all:
 // a grey becomes the same grey in every keyframe. Breaks if keyframes, channels
 // or the direction of the map are mixed up.
 TEST(ExposureCalibration, UndoesTheExposuresOfTheCameras) {
   const Wall wall = MakeWall(9);
-  const ExposureCalibration found =
-      CalibrateExposures(wall.texels,
-                         wall.observations,
-                         wall.planes,
-                         wall.camera,
-                         wall.poses,
-                         wall.images,
-                         ExposureOptions());
+  const ExposureCalibration found = Calibrate(wall);
   ASSERT_EQ(found.exposures.size(), 9u);
   EXPECT_GT(found.rms_before, 5);
   EXPECT_LT(found.rms_after, 1);
@@ -211,19 +214,25 @@ TEST(ExposureCalibration, LeavesAgreeingCamerasAlone) {
                                        static_cast<std::ptrdiff_t>(seen));
   }
   wall.observations.begin[4] = 3 * seen;  // the last keyframe sees nothing
-  const ExposureCalibration found =
-      CalibrateExposures(wall.texels,
-                         wall.observations,
-                         wall.planes,
-                         wall.camera,
-                         wall.poses,
-                         wall.images,
-                         ExposureOptions());
+  const ExposureCalibration found = Calibrate(wall);
   for (const Exposure& exposure : found.exposures) {
     for (int c = 0; c < 3; ++c) {
       EXPECT_NEAR(exposure.gain[c], 1, 1e-3);
       EXPECT_NEAR(exposure.offset[c], 0, 1e-3);
     }
+  }
+}
+
+// A keyframe that shows a negative fits no camera: it stays as taken, and the
+// texture is never divided by a gain near 0. Breaks without the bound on gains.
+TEST(ExposureCalibration, ImpossibleKeyframesStayAsTaken) {
+  Wall wall = MakeWall(9);
+  cv::bitwise_not(wall.images.rgb[4], wall.images.rgb[4]);
+  const ExposureCalibration found = Calibrate(wall);
+  EXPECT_EQ((found.exposures[4].gain - 1).abs().maxCoeff(), 0);
+  EXPECT_EQ(found.exposures[4].offset.abs().maxCoeff(), 0);
+  for (const Exposure& exposure : found.exposures) {
+    EXPECT_GE(exposure.gain.minCoeff(), 0.25f);
   }
 }
 
