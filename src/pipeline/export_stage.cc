@@ -105,14 +105,15 @@ TexturedMesh Bake(const ReconstructOptions& options,
                   const std::vector<Plane>& planes,
                   const std::vector<Pose>& cam_from_world,
                   const std::vector<double>& warps,
-                  BakeReport* report) {
+                  BakeReport* report,
+                  const std::vector<char>& only_faces = {}) {
   const RayScene scene(mesh);
   return MakeModel(
       input, mesh,
       BakeTexture(mesh, planes, input.atlas, scene, input.sequence,
                   input.keyframes, images, cam_from_world,
                   input.photometric.lattice, warps, options.visibility,
-                  options.bake, report));
+                  options.bake, report, only_faces));
 }
 
 void WriteMasks(const ReconstructOptions& options, const BakeReport& report) {
@@ -132,27 +133,40 @@ void WriteMasks(const ReconstructOptions& options, const BakeReport& report) {
   }
 }
 
+// Returns where the pictures are taken from.
+std::vector<PreviewView> DrawDense(const std::string& dir,
+                                   const ExportInput& input) {
+  const TriMesh& dense = input.dense.mesh;
+  const RayScene scene(dense);
+  const std::vector<PreviewView> views =
+      ChooseViews(scene, dense, input.initial_cam_from_world);
+  const std::vector<SampledView> sampled = SampleViews(scene, dense, views);
+  DrawInput(dir, sampled, dense);
+  DrawPlanes(dir, sampled, dense, input.dense.partition.face_cluster);
+  return views;
+}
+
 void WritePreviews(const ReconstructOptions& options,
                    const ExportInput& input,
                    const TexturedMesh& model) {
   const std::string dir = options.output_path + "/previews";
-  const TriMesh& dense = input.dense.mesh;
-  std::vector<PreviewView> views;
+  const std::vector<PreviewView> views = DrawDense(dir, input);
   {
-    const RayScene scene(dense);
-    views = ChooseViews(scene, dense, input.initial_cam_from_world);
+    const std::vector<SampledView> sampled =
+        SampleViews(RayScene(model.mesh), model.mesh, views);
+    DrawWireframe(dir, sampled, model.mesh,
+                  input.simplified.partition.face_cluster);
+    DrawTextured(dir, "after", sampled, model);
   }
-  DrawInput(dir, views, dense);
-  DrawPlanes(dir, views, dense, input.dense.partition.face_cluster);
-  DrawWireframe(dir, views, input.final_mesh,
-                input.simplified.partition.face_cluster);
-  DrawTextured(dir, "after", views, model);
+  const TriMesh& start = input.simplified.mesh;
+  const std::vector<SampledView> sampled =
+      SampleViews(RayScene(start), start, views);
   KeyframeImages as_taken = input.images;
   as_taken.exposures.clear();
-  const TexturedMesh before =
-      Bake(options, input, as_taken, input.simplified.mesh, input.initial_planes,
-           input.initial_cam_from_world, {}, nullptr);
-  DrawTextured(dir, "before", views, before);
+  const TexturedMesh before = Bake(
+      options, input, as_taken, start, input.initial_planes,
+      input.initial_cam_from_world, {}, nullptr, SeenFaces(start, sampled));
+  DrawTextured(dir, "before", sampled, before);
 }
 
 }  // namespace

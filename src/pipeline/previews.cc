@@ -13,14 +13,13 @@ namespace {
 
 void Draw(const std::string& dir,
           const std::string& name,
-          const std::vector<PreviewView>& views,
+          const std::vector<SampledView>& views,
           const TriMesh& mesh,
           const SurfaceColor& color,
           const DrawOptions& options) {
-  const RayScene scene(mesh);
-  for (const PreviewView& view : views) {
-    WritePng(dir + "/" + name + "_" + view.name + ".png",
-             DrawView(SampleView(scene, mesh, view), mesh, color, options));
+  for (const SampledView& sampled : views) {
+    WritePng(dir + "/" + name + "_" + sampled.view.name + ".png",
+             DrawView(sampled, mesh, color, options));
   }
 }
 
@@ -38,8 +37,29 @@ void WritePng(const std::string& path, const Picture& picture) {
   });
 }
 
+std::vector<SampledView> SampleViews(const RayScene& scene,
+                                     const TriMesh& mesh,
+                                     const std::vector<PreviewView>& views) {
+  std::vector<SampledView> sampled;
+  for (const PreviewView& view : views) {
+    sampled.push_back(SampleView(scene, mesh, view));
+  }
+  return sampled;
+}
+
+std::vector<char> SeenFaces(const TriMesh& mesh,
+                            const std::vector<SampledView>& views) {
+  std::vector<char> seen(mesh.NumFaces(), 0);
+  for (const SampledView& sampled : views) {
+    for (const int face : sampled.face) {
+      if (face >= 0) seen[face] = 1;
+    }
+  }
+  return seen;
+}
+
 void DrawInput(const std::string& dir,
-               const std::vector<PreviewView>& views,
+               const std::vector<SampledView>& views,
                const TriMesh& mesh) {
   DrawOptions options;
   options.smooth_normals = true;
@@ -51,14 +71,14 @@ void DrawInput(const std::string& dir,
 }
 
 void DrawPlanes(const std::string& dir,
-                const std::vector<PreviewView>& views,
+                const std::vector<SampledView>& views,
                 const TriMesh& mesh,
                 const std::vector<int>& face_plane) {
   Draw(dir, "planes", views, mesh, PlaneColors(face_plane), DrawOptions());
 }
 
 void DrawWireframe(const std::string& dir,
-                   const std::vector<PreviewView>& views,
+                   const std::vector<SampledView>& views,
                    const TriMesh& mesh,
                    const std::vector<int>& face_plane) {
   DrawOptions options;
@@ -68,7 +88,7 @@ void DrawWireframe(const std::string& dir,
 
 void DrawTextured(const std::string& dir,
                   const std::string& name,
-                  const std::vector<PreviewView>& views,
+                  const std::vector<SampledView>& views,
                   const TexturedMesh& model) {
   DrawOptions options;
   options.shade = false;

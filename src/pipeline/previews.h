@@ -18,28 +18,37 @@ namespace facet {
 // Writes a picture as PNG, atomically.
 void WritePng(const std::string& path, const Picture& picture);
 
+// The rays of all views. `scene` must be built from `mesh`.
+std::vector<SampledView> SampleViews(const RayScene& scene,
+                                     const TriMesh& mesh,
+                                     const std::vector<PreviewView>& views);
+
+// By face: does any ray hit it?
+std::vector<char> SeenFaces(const TriMesh& mesh,
+                            const std::vector<SampledView>& views);
+
 // input_<view>.png (shaded) and, when the mesh has colours,
-// input_color_<view>.png.
+// input_color_<view>.png. Here and below `mesh` is the one that was sampled.
 void DrawInput(const std::string& dir,
-               const std::vector<PreviewView>& views,
+               const std::vector<SampledView>& views,
                const TriMesh& mesh);
 
 // planes_<view>.png: clusters of the dense mesh in their colours.
 void DrawPlanes(const std::string& dir,
-                const std::vector<PreviewView>& views,
+                const std::vector<SampledView>& views,
                 const TriMesh& mesh,
                 const std::vector<int>& face_plane);
 
 // wireframe_<view>.png: the light mesh, plane colours, triangle edges.
 void DrawWireframe(const std::string& dir,
-                   const std::vector<PreviewView>& views,
+                   const std::vector<SampledView>& views,
                    const TriMesh& mesh,
                    const std::vector<int>& face_plane);
 
 // <name>_<view>.png: with texture, unlit.
 void DrawTextured(const std::string& dir,
                   const std::string& name,
-                  const std::vector<PreviewView>& views,
+                  const std::vector<SampledView>& views,
                   const TexturedMesh& model);
 
 }  // namespace facet

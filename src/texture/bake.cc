@@ -20,7 +20,7 @@ using Eigen::Vector2f;
 using Eigen::Vector3f;
 
 // For each tile that a keyframe sees at all: a bit a texel by Test(), then a
-// bit a texel by MaySee().
+// bit a texel by its milder verdict.
 struct FrameBits {
   std::vector<uint32_t> tile;
   std::vector<uint32_t> first_word;
@@ -45,7 +45,8 @@ class Baker {
         const WarpLattice& lattice,
         const std::vector<double>& warps,
         const VisibilityOptions& visibility,
-        const BakeOptions& options)
+        const BakeOptions& options,
+        const std::vector<char>& only_faces)
       : mesh_(mesh),
         planes_(planes),
         atlas_(atlas),
@@ -59,7 +60,10 @@ class Baker {
         visibility_(visibility),
         options_(options),
         camera_(sequence.calibration().color),
-        texels_(MakeBakeTexels(mesh, planes, atlas, options.ring_px)) {}
+        has_powers_(options.angle_power > 0 || options.depth_power > 0 ||
+                    options.sharpness_power > 0),
+        texels_(MakeBakeTexels(mesh, planes, atlas, options.ring_px)),
+        only_faces_(only_faces) {}
 
   std::vector<cv::Mat> Run(BakeReport* report) {
     FindVisibility();
@@ -99,7 +103,9 @@ class Baker {
   void FindVisibility() {
     const auto& tiles = texels_.tiles;
     std::vector<Ball> balls(tiles.size());
+    wanted_.assign(tiles.size(), 1);
     ParallelFor(0, tiles.size(), [&](size_t t) {
+      wanted_[t] = IsWanted(tiles[t]);
       balls[t] = BallAround(texels_.q.data() + tiles[t].begin,
                             tiles[t].owned_end - tiles[t].begin);
     });
@@ -113,6 +119,14 @@ class Baker {
             {static_cast<int>(k), bits.words.data() + bits.first_word[i]});
       }
     }
+  }
+
+  bool IsWanted(const BakeTile& tile) const {
+    if (only_faces_.empty()) return true;
+    const auto face = texels_.face.begin();
+    return std::any_of(face + tile.begin, face + tile.owned_end, [&](int f) {
+      return only_faces_[f] != 0;
+    });
   }
 
   static size_t NumWords(const BakeTile& tile) {
@@ -131,7 +145,7 @@ class Baker {
     FrameBits& bits = frames_[k];
     std::vector<uint64_t> words;
     for (size_t t = 0; t < texels_.tiles.size(); ++t) {
-      if (view.TestBall(balls[t]) != Sight::kVisible) continue;
+      if (!wanted_[t] || view.TestBall(balls[t]) != Sight::kVisible) continue;
       const BakeTile& tile = texels_.tiles[t];
       const Chart& chart = atlas_.charts[tile.chart];
       Vector3f normal = Normal(chart, tile.begin);
@@ -146,8 +160,11 @@ class Baker {
         if (chart.steep) normal = Normal(chart, i);
         const Vector3f &p = texels_.p[i], &q = texels_.q[i];
         size_t word = (i - tile.begin) / 64;
-        if (view.Test(p, q, normal) != Sight::kVisible) {
-          if (!options_.mild_fallback || !view.MaySee(p, q, normal)) continue;
+        bool may_see = false;
+        if (view.Test(p, q, normal,
+                      options_.mild_fallback ? &may_see : nullptr) !=
+            Sight::kVisible) {
+          if (!may_see) continue;
           word += num_words;
         }
         words[word] |= uint64_t{1} << ((i - tile.begin) % 64);
@@ -165,12 +182,14 @@ class Baker {
                float z,
                float sharpness,
                const Vector2f& u) const {
-    float log_weight =
-        static_cast<float>(options_.angle_power) *
-            std::log2(std::max(cosine, 1e-3f)) -
-        static_cast<float>(options_.depth_power) * std::log2(z) +
-        static_cast<float>(options_.sharpness_power) * std::log2(sharpness);
-    float weight = std::exp2(log_weight);
+    float weight = 1;
+    if (has_powers_) {
+      weight = std::exp2(
+          static_cast<float>(options_.angle_power) *
+              std::log2(std::max(cosine, 1e-3f)) -
+          static_cast<float>(options_.depth_power) * std::log2(z) +
+          static_cast<float>(options_.sharpness_power) * std::log2(sharpness));
+    }
     if (options_.border_feather_px > 0) {
       const float border =
           std::min({u.x(),
@@ -291,7 +310,10 @@ class Baker {
   const VisibilityOptions& visibility_;
   const BakeOptions& options_;
   const Pinhole camera_;
+  const bool has_powers_;  // weights differ by more than the ramp
   const BakeTexels texels_;
+  const std::vector<char>& only_faces_;
+  std::vector<char> wanted_;                       // by tile
   std::vector<FrameBits> frames_;                  // by keyframe
   std::vector<std::vector<TileView>> tile_views_;  // ascending keyframe
   std::vector<float> sharpness_;
@@ -314,7 +336,8 @@ std::vector<cv::Mat> BakeTexture(const TriMesh& mesh,
                                  const std::vector<double>& warps,
                                  const VisibilityOptions& visibility,
                                  const BakeOptions& options,
-                                 BakeReport* report) {
+                                 BakeReport* report,
+                                 const std::vector<char>& only_faces) {
   if (options.angle_power < 0 || options.depth_power < 0 ||
       options.sharpness_power < 0 || !(options.best_view_power > 0) ||
       options.ring_px < 0) {
@@ -336,7 +359,8 @@ std::vector<cv::Mat> BakeTexture(const TriMesh& mesh,
                lattice,
                warps,
                visibility,
-               options)
+               options,
+               only_faces)
       .Run(report);
 }
 

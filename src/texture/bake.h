@@ -49,7 +49,7 @@ struct BakeOptions {
   // colours are averaged at the common exposure in any case.
   double local_exposure = 0.5;
   // Texels that no keyframe sees by the tests of VisibilityOptions take colours
-  // from those that pass the milder FrameView::MaySee.
+  // from those of the milder verdict of FrameView::Test.
   bool mild_fallback = true;
   BakeSampler sampler = BakeSampler::kBilinear;
   int ring_px = 4;      // gutter coloured from the images; the rest is copied
@@ -75,7 +75,10 @@ struct BakeReport {
 //   keyframes  indices into sequence.frames(), as in `images`
 //   color_cam_from_world, warps  by keyframe: pose; 2 * lattice.NumVertices()
 //              doubles [px]. `warps` may be empty.
-// `report` may be null. Same result at any number of threads.
+//   report     may be null
+//   only_faces by face, empty = all: texels of tiles without such a face count as
+//              unseen, which saves their time
+// Same result at any number of threads.
 std::vector<cv::Mat> BakeTexture(const TriMesh& mesh,
                                  const std::vector<Plane>& planes,
                                  const Atlas& atlas,
@@ -88,6 +91,7 @@ std::vector<cv::Mat> BakeTexture(const TriMesh& mesh,
                                  const std::vector<double>& warps,
                                  const VisibilityOptions& visibility,
                                  const BakeOptions& options,
-                                 BakeReport* report = nullptr);
+                                 BakeReport* report = nullptr,
+                                 const std::vector<char>& only_faces = {});
 
 }  // namespace facet

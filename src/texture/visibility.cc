@@ -14,6 +14,9 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr float kNothing = 1e9f;  // z of pixels where no mesh is
+// The mild verdict: 85 degrees, and free space before the point [m].
+constexpr float kMildCos = 0.087f;
+constexpr float kFreeSpace = 0.1f;
 
 }  // namespace
 
@@ -114,80 +117,64 @@ bool FrameView::IsInRangeAndImage(const Vector3f& q, Sight* refusal) const {
 
 Sight FrameView::Test(const Vector3f& p,
                       const Vector3f& q,
-                      const Vector3f& normal) const {
-  Sight refusal;
-  if (!IsInRangeAndImage(q, &refusal)) return refusal;
+                      const Vector3f& normal,
+                      bool* may_see) const {
+  if (may_see) *may_see = false;
+  Sight sight = Sight::kVisible;
+  if (!IsInRangeAndImage(q, &sight)) return sight;
   const Vector3f view = center_ - q;
   const float along = normal.dot(view);
-  if (options_.test_angle &&
-      (along <= 0 ||
-       along * along < min_cos_ * min_cos_ * view.squaredNorm())) {
-    return Sight::kGrazing;
-  }
-  const Sight sensor = TestSensorDepth(q);
-  if (sensor != Sight::kVisible) return sensor;
-  if (IsAtMeshEdge(p)) return Sight::kMeshEdge;
-  if (options_.test_occlusion && IsOccluded(p)) return Sight::kOccluded;
-  return Sight::kVisible;
+  const auto flatter_than = [&](float cosine) {
+    return along <= 0 || along * along < cosine * cosine * view.squaredNorm();
+  };
+  bool mild = may_see && !flatter_than(kMildCos);
+  const bool grazing = options_.test_angle && flatter_than(min_cos_);
+  if (grazing && !mild) return Sight::kGrazing;
+  const DepthReading reading = ReadDepth(q);
+  mild &= !(reading.measured > 0 && reading.measured < reading.z - kFreeSpace);
+  sight = grazing ? Sight::kGrazing : TestSensorDepth(reading);
+  if (sight == Sight::kVisible && IsAtMeshEdge(p)) sight = Sight::kMeshEdge;
+  if (sight != Sight::kVisible && !mild) return sight;
+  const bool occluded = options_.test_occlusion && IsOccluded(p);
+  if (may_see) *may_see = !occluded;
+  return sight == Sight::kVisible && occluded ? Sight::kOccluded : sight;
 }
 
-bool FrameView::MaySee(const Vector3f& p,
-                       const Vector3f& q,
-                       const Vector3f& normal) const {
-  constexpr float kMinCos = 0.087f;  // 85 degrees
-  constexpr float kFreeSpace = 0.1f;
-  Sight refusal;
-  if (!IsInRangeAndImage(q, &refusal)) return false;
-  const Vector3f view = center_ - q;
-  const float along = normal.dot(view);
-  if (along <= 0 || along * along < kMinCos * kMinCos * view.squaredNorm()) {
-    return false;
-  }
-  float z = 0;
-  int col = -1, row = -1;
-  const float measured = MeasuredDepth(q, &z, &col, &row);
-  if (measured > 0 && measured < z - kFreeSpace) return false;
-  return !options_.test_occlusion || !IsOccluded(p);
-}
-
-float FrameView::MeasuredDepth(const Vector3f& q,
-                               float* z,
-                               int* column,
-                               int* row) const {
+FrameView::DepthReading FrameView::ReadDepth(const Vector3f& q) const {
+  DepthReading reading;
+  if (depth_.empty()) return reading;
   const Vector3f y = depth_rotation_ * q + depth_translation_;
-  *z = y.z();
-  *column = *row = -1;
-  if (!(y.z() > 0)) return 0;
+  reading.z = y.z();
+  if (!(y.z() > 0)) return reading;
   const Eigen::Vector2d u = depth_camera_.Project<double>(y.cast<double>());
   // Compared as doubles: far outside, an int would overflow.
   if (!(u.x() > -0.5 && u.y() > -0.5 && u.x() < depth_camera_.width - 0.5 &&
         u.y() < depth_camera_.height - 0.5)) {
-    return 0;
+    return reading;
   }
-  *column = std::min(static_cast<int>(u.x() + 0.5), depth_camera_.width - 1);
-  *row = std::min(static_cast<int>(u.y() + 0.5), depth_camera_.height - 1);
-  return depth_.empty() ? 0 : depth_.at<float>(*row, *column);
+  reading.column =
+      std::min(static_cast<int>(u.x() + 0.5), depth_camera_.width - 1);
+  reading.row =
+      std::min(static_cast<int>(u.y() + 0.5), depth_camera_.height - 1);
+  reading.measured = depth_.at<float>(reading.row, reading.column);
+  return reading;
 }
 
-Sight FrameView::TestSensorDepth(const Vector3f& q) const {
-  if (!options_.test_sensor_depth && !options_.test_depth_edges) {
-    return Sight::kVisible;
-  }
-  float z = 0;
-  int col = -1, row = -1;
-  const float measured = MeasuredDepth(q, &z, &col, &row);
-  const bool missing = !(measured > 0);
+Sight FrameView::TestSensorDepth(const DepthReading& reading) const {
+  const bool missing = !(reading.measured > 0);
   if (options_.test_sensor_depth && missing && !options_.allow_missing_depth) {
     return Sight::kDepthMissing;
   }
-  if (options_.test_depth_edges && col >= 0 && !edges_.empty() &&
-      edges_.at<uint8_t>(row, col)) {
+  if (options_.test_depth_edges && reading.column >= 0 && !edges_.empty() &&
+      edges_.at<uint8_t>(reading.row, reading.column)) {
     return Sight::kDepthEdge;
   }
   if (options_.test_sensor_depth && !missing) {
-    const double tolerance =
-        std::max(options_.min_depth_tolerance_m, 3 * DepthSigma(z) + 0.02);
-    if (std::abs(measured - z) > tolerance) return Sight::kDepthDisagrees;
+    const double tolerance = std::max(options_.min_depth_tolerance_m,
+                                      3 * DepthSigma(reading.z) + 0.02);
+    if (std::abs(reading.measured - reading.z) > tolerance) {
+      return Sight::kDepthDisagrees;
+    }
   }
   return Sight::kVisible;
 }

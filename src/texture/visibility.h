@@ -52,17 +52,15 @@ class FrameView {
 
   // p: the point on the mesh; q: the point that is coloured (plane point);
   // normal: outward, unit.
+  //
+  // `may_see`, if not null, gets a milder verdict, for points that no keyframe
+  // sees by the tests: inside the range and the image, not occluded by the mesh,
+  // seen at less than 85 degrees, and no surface measured more than 10 cm before
+  // it. Missing depth and depth edges do not matter. True for kVisible.
   Sight Test(const Eigen::Vector3f& p,
              const Eigen::Vector3f& q,
-             const Eigen::Vector3f& normal) const;
-
-  // A milder verdict, for points that no keyframe sees by Test(): inside the
-  // range and the image, not occluded by the mesh, seen at less than 85
-  // degrees, and no surface measured more than 10 cm before it. Missing depth
-  // and depth edges do not matter. Implied by Test() with its default options.
-  bool MaySee(const Eigen::Vector3f& p,
-              const Eigen::Vector3f& q,
-              const Eigen::Vector3f& normal) const;
+             const Eigen::Vector3f& normal,
+             bool* may_see = nullptr) const;
 
   // The verdict on all points q of a ball, if it is the same one without
   // looking closer (kBehindOrFar or kOutsideImage); else kVisible.
@@ -71,16 +69,18 @@ class FrameView {
   const Eigen::Vector3f& center() const { return center_; }
 
  private:
+  // What the depth image shows of a point.
+  struct DepthReading {
+    float measured = 0;         // [m], 0 = missing
+    float z = 0;                // of the point
+    int column = -1, row = -1;  // -1 = outside the image
+  };
+
   bool IsOccluded(const Eigen::Vector3f& p) const;
   bool IsAtMeshEdge(const Eigen::Vector3f& p) const;
-  Sight TestSensorDepth(const Eigen::Vector3f& q) const;
   bool IsInRangeAndImage(const Eigen::Vector3f& q, Sight* refusal) const;
-  // Sensor depth at a point [m], 0 = missing; z there, and the pixel (-1 =
-  // outside the depth image).
-  float MeasuredDepth(const Eigen::Vector3f& q,
-                      float* z,
-                      int* column,
-                      int* row) const;
+  DepthReading ReadDepth(const Eigen::Vector3f& q) const;
+  Sight TestSensorDepth(const DepthReading& reading) const;
 
   const RayScene& scene_;
   VisibilityOptions options_;
