@@ -34,7 +34,7 @@ std::string PhaseLine(const std::string& round,
   char line[200];
   std::snprintf(line,
                 sizeof(line),
-                "  %5s  %-7s %12.4f %12.4f %12.4f %12.4f %9.4f %10.4f %9.3f  "
+                "  %5s  %-7s %12.4f %12.4f %12.4f %12.4f %10.4f %9.3f  "
                 "%-8s %7.1f",
                 round.c_str(),
                 phase.c_str(),
@@ -42,8 +42,7 @@ std::string PhaseLine(const std::string& round,
                 lambda1 * e.e_p,
                 lambda2 * e.e_s,
                 e.e_tex,
-                e.e_prior,
-                e.e_depth,
+                e.e_prior + e.e_depth + e.SumOfTerms(),
                 e.rms_grey,
                 mark,
                 wall_s);
@@ -127,6 +126,12 @@ class Level {
   }
 
   const TextureProblem& problem() const { return problem_; }
+
+  void AddTerms(const std::vector<WeightedTerm>& terms,
+                const ReconState& start,
+                double texel_weight) {
+    facet::AddTerms(terms, start, texel_weight, &problem_);
+  }
 
  private:
   void AddChannels(double sigma) {
@@ -333,7 +338,7 @@ PhotometricResult RunPhotometricStage(
   }
   const StageInputs inputs = {
       options, sequence, cam_from_world, anchors, depth_moments};
-  const Level finest(inputs, images, 0, std::move(sampled));
+  Level finest(inputs, images, 0, std::move(sampled));
   const TextureProblem& problem = finest.problem();
   result.lattice = problem.lattice;
   ReconState state = InitialState(problem, planes);
@@ -342,10 +347,12 @@ PhotometricResult RunPhotometricStage(
   weights.lambda1 = InitialLambda1(problem, weights, state);
   result.lambda1 = weights.lambda1;
   weights.prior.scale = InitialPriorScale(problem, weights, state);
+  const ReconState start = state;
+  finest.AddTerms(options.terms, start, weights.texel_weight);
 
   print(
       "  round  phase            E_c   lambda1 E_p   lambda2 E_s        E_tex"
-      "   E_prior    E_depth  rms grey  result    wall s");
+      "     others  rms grey  result    wall s");
   result.initial = EvaluateEnergy(problem, weights, state, true);
   print(PhaseLine(
       "0", "start", result.initial, weights.lambda1, weights.lambda2, "", 0));
@@ -353,9 +360,10 @@ PhotometricResult RunPhotometricStage(
   for (int level = options.levels - 1; level > 0; --level) {
     const KeyframeImages reduced =
         PyramidLevel(images, level, options.smoothing_sigma_px);
-    const Level coarse(inputs, reduced, level, sample(result.stride << level));
+    Level coarse(inputs, reduced, level, sample(result.stride << level));
     EnergyWeights coarse_weights = weights;
     coarse_weights.texel_weight *= 1 << (2 * level);
+    coarse.AddTerms(options.terms, start, coarse_weights.texel_weight);
     RunLevel(coarse.problem(),
              coarse_weights,
              options,

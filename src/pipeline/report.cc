@@ -17,12 +17,15 @@ namespace facet {
 using nlohmann::json;
 
 json ToJson(const EnergyTerms& t) {
+  json terms = json::object();
+  for (const NamedEnergy& term : t.e_terms) terms[term.name] = term.value;
   return {{"E_c", t.e_c},
           {"E_p", t.e_p},
           {"E_s", t.e_s},
           {"E_tex", t.e_tex},
           {"E_prior", t.e_prior},
           {"E_depth", t.e_depth},
+          {"terms", terms},
           {"rms_intensity", t.RmsIntensity()},
           {"rms_grey", t.rms_grey},
           {"observations", t.observations},

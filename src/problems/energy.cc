@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "costs/depth_moment.h"
 #include "costs/plane_manifold.h"
-#include "costs/se3_manifold.h"
 #include "problems/tile_samples.h"
 #include "util/parallel_for.h"
 
@@ -62,6 +60,12 @@ double SumPlaneDistances(const TextureProblem& problem,
 
 }  // namespace
 
+double EnergyTerms::SumOfTerms() const {
+  double sum = 0;
+  for (const NamedEnergy& term : e_terms) sum += term.value;
+  return sum;
+}
+
 double EnergyTerms::RmsIntensity() const {
   return observations == 0
              ? 0.0
@@ -72,36 +76,6 @@ double EnergyTerms::ClampedShare() const {
   return observations == 0 ? 0.0
                            : static_cast<double>(clamped) /
                                  static_cast<double>(observations);
-}
-
-double EvaluatePosePrior(const TextureProblem& problem,
-                         const EnergyWeights& weights,
-                         const ReconState& state) {
-  if (!weights.pose_prior) return 0;
-  double sum = 0;
-  for (int k = 0; k < problem.NumKeyframes(); ++k) {
-    double r[6];
-    PosePriorCost(problem.initial_cam_from_world[k], weights.prior)(
-        state.poses.data() + kPoseSize * k, r);
-    for (const double x : r) sum += x * x;
-  }
-  return sum;
-}
-
-double EvaluateDepthTerm(const TextureProblem& problem,
-                         const EnergyWeights& weights,
-                         const ReconState& state) {
-  if (weights.depth_weight == 0) return 0;
-  double sum = 0;
-  for (const DepthMoment& d : problem.depth_moments) {
-    double r[4];
-    DepthMomentCost(d.moment, problem.anchors[d.plane], weights.DepthFactor())(
-        state.poses.data() + kPoseSize * d.keyframe,
-        state.planes.data() + kPlaneSize * d.plane,
-        r);
-    for (const double x : r) sum += x * x;
-  }
-  return sum;
 }
 
 EnergyTerms EvaluateEnergy(const TextureProblem& problem,
@@ -118,8 +92,11 @@ EnergyTerms EvaluateEnergy(const TextureProblem& problem,
   terms.e_c = weights.texel_weight * sums.squares;
   terms.e_p = weights.texel_weight * SumPlaneDistances(problem, state);
   for (const double f : state.warps) terms.e_s += f * f;
-  terms.e_prior = EvaluatePosePrior(problem, weights, state);
-  terms.e_depth = EvaluateDepthTerm(problem, weights, state);
+  terms.e_prior = EvaluateTerm(PosePriorTerm(problem, weights), state);
+  terms.e_depth = EvaluateTerm(DepthTerm(problem, weights), state);
+  for (const Term& term : problem.terms) {
+    terms.e_terms.push_back({term.name, EvaluateTerm(term, state)});
+  }
   terms.e_tex =
       terms.e_c + weights.lambda1 * terms.e_p + weights.lambda2 * terms.e_s;
   terms.observations = sums.counts.used;

@@ -15,13 +15,15 @@
 //   E_s  sum over control vertices of |f|^2 [px^2]
 //
 // No 1/2: all schedules and solvers are judged by this function, never by
-// Ceres's internal cost (2 * cost = E_tex + E_prior + E_depth; tested). The set of
+// Ceres's internal cost (2 * cost = E_tex + E_prior + E_depth +
+// further terms; tested). The set of
 // observations is frozen: samples outside the image are clamped to its border
 // and counted (with OutOfImage::kDrop they have no residual and count as lost).
 // Energies of different formulations do not compare; rms_grey does.
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "problems/texture_problem.h"
 
@@ -46,17 +48,26 @@ struct EnergyWeights {
   double DepthFactor() const { return depth_weight * 0.05 * 0.05; }
 };
 
+struct NamedEnergy {
+  std::string name;
+  double value = 0;
+};
+
 struct EnergyTerms {
   double e_c = 0, e_p = 0, e_s = 0;  // unweighted by lambda
   double e_prior = 0;                // pose prior (costs/pose_prior.h)
   double e_depth = 0;                // weighted E_d
+  std::vector<NamedEnergy> e_terms;  // of TextureProblem::terms
   double e_tex = 0;                  // E_c + lambda1 E_p + lambda2 E_s
   // rms of I - C on the unsmoothed luma, 0-255, of all observations and without
   // any loss, whatever the formulation.
   double rms_grey = 0;
   size_t observations = 0, clamped = 0, behind = 0, lost = 0;
 
-  double Objective() const { return e_tex + e_prior + e_depth; }
+  double SumOfTerms() const;  // e_terms
+  double Objective() const {
+    return e_tex + e_prior + e_depth + SumOfTerms();
+  }
   double RmsIntensity() const;  // sqrt(mean rho), smoothed images, 0-1
   double ClampedShare() const;
   double texel_weight = 1;
@@ -68,16 +79,6 @@ EnergyTerms EvaluateEnergy(const TextureProblem& problem,
                            const EnergyWeights& weights,
                            const ReconState& state,
                            bool with_rms_grey = false);
-
-// E_prior alone.
-double EvaluatePosePrior(const TextureProblem& problem,
-                         const EnergyWeights& weights,
-                         const ReconState& state);
-
-// Weighted E_d: how far the depth images are from the planes.
-double EvaluateDepthTerm(const TextureProblem& problem,
-                         const EnergyWeights& weights,
-                         const ReconState& state);
 
 // lambda1 = lambda1_share E_c / E_p at the initial state (paper, Sec. 3.3: share
 // 1), with E_p floored at (0.5 mm)^2 a texel; 1e3 when E_c is 0 (method, Sec.

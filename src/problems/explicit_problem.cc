@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "costs/depth_moment.h"
 #include "costs/photometric.h"
 #include "costs/plane_manifold.h"
 #include "costs/plane_moment.h"
@@ -38,6 +37,7 @@ ExplicitProblem::ExplicitProblem(const TextureProblem& problem,
       colors_(state->colors.begin(), state->colors.end()) {
   for (int k = 0; k < problem.NumKeyframes(); ++k) AddKeyframe(k, weights);
   AddPlanes(weights);
+  TermBlocks(problem, weights).AddAll(state, &ceres_);
 }
 
 double* ExplicitProblem::PlaneBlock(int j) {
@@ -105,11 +105,6 @@ void ExplicitProblem::AddKeyframe(int k, const EnergyWeights& weights) {
   ceres_.AddParameterBlock(PoseBlock(k),
                            kPoseSize,
                            CreatePoseManifold(problem_.formulation.manifold));
-  if (!weights.pose_prior) return;
-  ceres_.AddResidualBlock(
-      PosePriorCost::Create(problem_.initial_cam_from_world[k], weights.prior),
-      nullptr,
-      PoseBlock(k));
 }
 
 void ExplicitProblem::AddPlanes(const EnergyWeights& weights) {
@@ -126,15 +121,6 @@ void ExplicitProblem::AddPlanes(const EnergyWeights& weights) {
     if (problem_.plane_texels[j] == 0) {
       ceres_.SetParameterBlockConstant(PlaneBlock(j));
     }
-  }
-  if (weights.depth_weight == 0) return;
-  for (const DepthMoment& d : problem_.depth_moments) {
-    ceres_.AddResidualBlock(
-        DepthMomentCost::Create(
-            d.moment, problem_.anchors[d.plane], weights.DepthFactor()),
-        nullptr,
-        PoseBlock(d.keyframe),
-        PlaneBlock(d.plane));
   }
 }
 

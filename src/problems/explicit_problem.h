@@ -6,7 +6,7 @@
 // The readable reference, the oracle of the optimiser's tests, and two ways to
 // solve any set of blocks at once on small problems: about 1 kB an observation.
 //
-//   2 * cost = E_tex + E_prior + E_depth
+//   2 * cost = E_tex + E_prior + E_depth + further terms
 #pragma once
 
 #include <ceres/problem.h>

@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "costs/depth_moment.h"
 #include "costs/plane_manifold.h"
 #include "costs/se3_manifold.h"
 #include "problems/color_step.h"
@@ -252,13 +251,6 @@ void AddBlocks(const TextureProblem& problem,
         new PoseRowsCost(evaluation, k, num_keyframes), nullptr, parameters);
     ceres_problem->SetManifold(
         pose(k), CreatePoseManifold(problem.formulation.manifold));
-    if (weights.pose_prior) {
-      ceres_problem->AddResidualBlock(
-          PosePriorCost::Create(problem.initial_cam_from_world[k],
-                                weights.prior),
-          nullptr,
-          pose(k));
-    }
   }
   // On a pose that moves: Ceres evaluates residuals of constant blocks once.
   ceres_problem->AddResidualBlock(
@@ -281,19 +273,7 @@ void AddBlocks(const TextureProblem& problem,
         plane,
         CreatePlaneManifold(problem.formulation.plane, problem.anchors[j]));
   }
-  if (weights.depth_weight == 0) return;
-  for (const DepthMoment& d : problem.depth_moments) {
-    double* plane = state->planes.data() + kPlaneSize * d.plane;
-    ceres_problem->AddResidualBlock(
-        DepthMomentCost::Create(
-            d.moment, problem.anchors[d.plane], weights.DepthFactor()),
-        nullptr,
-        pose(d.keyframe),
-        plane);
-    if (ceres_problem->GetManifold(plane) == nullptr) {
-      ceres_problem->SetParameterBlockConstant(plane);
-    }
-  }
+  TermBlocks(problem, weights).AddAll(state, ceres_problem);
 }
 
 }  // namespace

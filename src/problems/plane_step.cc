@@ -33,29 +33,6 @@ std::vector<PlaneSegment> SegmentsOfPlane(const TextureProblem& problem,
   return segments;
 }
 
-// lambda1 E_p and the weighted E_d of each plane as one moment of (n, d): with
-// poses fixed, psi of costs/depth_moment.h is linear in the plane.
-std::vector<Eigen::Matrix4d> PlaneMoments(const TextureProblem& problem,
-                                          const EnergyWeights& weights,
-                                          const ReconState& state) {
-  std::vector<Eigen::Matrix4d> moments;
-  for (const Eigen::Matrix4d& moment : problem.moments) {
-    moments.push_back(weights.texel_weight * weights.lambda1 * moment);
-  }
-  if (weights.depth_weight == 0) return moments;
-  for (const DepthMoment& d : problem.depth_moments) {
-    const Pose pose = state.CamFromWorld(d.keyframe);
-    Eigen::Matrix4d psi = Eigen::Matrix4d::Zero();
-    psi.topLeftCorner<3, 3>() = pose.RotationMatrix();
-    psi.bottomLeftCorner<1, 3>() =
-        (pose.CenterInSource() - problem.anchors[d.plane]).transpose();
-    psi(3, 3) = 1;
-    moments[d.plane] +=
-        weights.DepthFactor() * psi.transpose() * d.moment * psi;
-  }
-  return moments;
-}
-
 // Normalises (n, d), keeps the side of the normal and scales steps beyond the
 // limits back towards `before`.
 void LimitPlaneStep(const SolverConfig& config,
@@ -113,8 +90,7 @@ void SolvePlanes(const TextureProblem& problem,
   const std::vector<PhotoChannel> channels =
       MakePhotoChannels(problem, *state, PointsAt::kMesh);
   const double photo_weight = weights.texel_weight / problem.NumChannels();
-  const std::vector<Eigen::Matrix4d> moments =
-      PlaneMoments(problem, weights, *state);
+  const TermBlocks terms(problem, weights);
   std::vector<int> iterations(num_planes, 0), reverted(num_planes, 0);
   std::vector<double> cost_start(num_planes, 0.0), cost_end(num_planes, 0.0);
 
@@ -151,7 +127,11 @@ void SolvePlanes(const TextureProblem& problem,
       }
     }
     ceres_problem.AddResidualBlock(
-        new PlaneMomentCost(moments[j], 1), nullptr, plane);
+        new PlaneMomentCost(problem.moments[j],
+                            weights.texel_weight * weights.lambda1),
+        nullptr,
+        plane);
+    terms.AddPlane(static_cast<int>(j), state, &ceres_problem);
     const double cost_before = Cost(&ceres_problem);
     ceres::Solver::Summary solved;
     ceres::Solve(PlaneSolverOptions(config, memory->plane_radius[j]),

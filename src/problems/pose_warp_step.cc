@@ -10,9 +10,7 @@
 #include <cmath>
 #include <memory>
 
-#include "costs/depth_moment.h"
 #include "costs/frame_cell_cost.h"
-#include "costs/plane_manifold.h"
 #include "costs/warp_offset.h"
 #include "problems/cell_bins.h"
 #include "problems/reference_blocks.h"
@@ -44,6 +42,7 @@ class FrameProblem {
  public:
   FrameProblem(const TextureProblem& problem,
                const EnergyWeights& weights,
+               const TermBlocks& terms,
                unsigned blocks,
                const std::vector<PhotoChannel>& channels,
                int keyframe,
@@ -62,14 +61,11 @@ class FrameProblem {
                              CreatePoseManifold(problem.formulation.manifold));
     AddCells(channels, keyframe, *state, weights);
     if (with_warp_) AddWarpTerm(weights);
-    if (weights.pose_prior) {
-      ceres_.AddResidualBlock(
-          PosePriorCost::Create(problem.initial_cam_from_world[keyframe],
-                                weights.prior),
-          nullptr, pose_);
+    if (blocks & kPoses) {
+      terms.AddPose(keyframe, state, &ceres_);
+    } else {
+      ceres_.SetParameterBlockConstant(pose_);
     }
-    if (blocks & kPoses) AddDepthTerm(weights, keyframe, state);
-    if (!(blocks & kPoses)) ceres_.SetParameterBlockConstant(pose_);
   }
 
   bool with_warp() const { return with_warp_; }
@@ -117,25 +113,6 @@ class FrameProblem {
                               weight),
             nullptr, parameters);
       }
-    }
-  }
-
-  // Without effect on the solution while the pose is fixed.
-  void AddDepthTerm(const EnergyWeights& weights,
-                    int keyframe,
-                    ReconState* state) {
-    if (weights.depth_weight == 0) return;
-    const auto& moments = texture_.depth_moments;
-    auto d = std::lower_bound(
-        moments.begin(), moments.end(), keyframe,
-        [](const DepthMoment& m, int k) { return m.keyframe < k; });
-    for (; d != moments.end() && d->keyframe == keyframe; ++d) {
-      double* plane = state->planes.data() + kPlaneSize * d->plane;
-      ceres_.AddResidualBlock(
-          DepthMomentCost::Create(d->moment, texture_.anchors[d->plane],
-                                  weights.DepthFactor()),
-          nullptr, pose_, plane);
-      ceres_.SetParameterBlockConstant(plane);
     }
   }
 
@@ -217,6 +194,7 @@ struct FrameResult {
 
 FrameResult SolveFrame(const TextureProblem& problem,
                        const EnergyWeights& weights,
+                       const TermBlocks& terms,
                        unsigned blocks,
                        const SolverConfig& config,
                        const std::vector<PhotoChannel>& channels,
@@ -229,8 +207,8 @@ FrameResult SolveFrame(const TextureProblem& problem,
   const std::vector<double> pose_before(pose, pose + kPoseSize);
   const std::vector<double> warp_before(warp, warp + num_warp);
 
-  FrameProblem frame_problem(problem, weights, blocks, channels, keyframe,
-                             state);
+  FrameProblem frame_problem(problem, weights, terms, blocks, channels,
+                             keyframe, state);
   const double cost_before = frame_problem.Cost();
   ceres::Solver::Summary solved;
   ceres::Solve(FrameSolverOptions(config, frame_problem.with_warp(), *radius),
@@ -268,6 +246,7 @@ void SolvePosesAndWarps(const TextureProblem& problem,
   }
   const std::vector<PhotoChannel> channels =
       MakePhotoChannels(problem, *state, PointsAt::kPlane);
+  const TermBlocks terms(problem, weights);
   std::vector<FrameResult> results(num_frames);
   ParallelFor(0, num_frames, [&](size_t k) {
     const size_t n =
@@ -276,7 +255,7 @@ void SolvePosesAndWarps(const TextureProblem& problem,
     const unsigned free =
         config.fix_first_pose && k == 0 ? blocks & ~unsigned{kPoses} : blocks;
     if (free == 0) return;
-    results[k] = SolveFrame(problem, weights, free, config, channels,
+    results[k] = SolveFrame(problem, weights, terms, free, config, channels,
                             static_cast<int>(k), &memory->frame_radius[k],
                             state);
   });

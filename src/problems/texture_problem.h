@@ -17,6 +17,7 @@
 #include "geometry/pose.h"
 #include "geometry/warp_grid.h"
 #include "problems/formulation.h"
+#include "problems/term.h"
 #include "texture/depth_moments.h"
 #include "texture/observations.h"
 #include "texture/texels.h"
@@ -75,6 +76,7 @@ struct TextureProblem {
   std::vector<uint16_t> views;           // keyframes that see each texel
   std::vector<DepthMoment> depth_moments;    // may be empty: no E_d
   std::vector<Pose> initial_cam_from_world;  // centre of the pose prior
+  std::vector<Term> terms;                   // beside prior and E_d
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  // of float coordinates
   // Sampling::kScharr: gradients of all images, channel by channel.
   std::vector<std::vector<float>> gradients_x, gradients_y;

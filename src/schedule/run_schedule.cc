@@ -20,7 +20,7 @@ std::string CsvLine(int level,
   std::snprintf(
       line,
       sizeof(line),
-      "%d,%d,%s,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.6f,%zu,%zu,%zu,%zu,%d,"
+      "%d,%d,%s,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.6f,%zu,%zu,%zu,%zu,%d,"
       "%d,%d,%d,%.3f,%.3f\n",
       level,
       round,
@@ -31,6 +31,7 @@ std::string CsvLine(int level,
       e.e_tex,
       e.e_prior,
       e.e_depth,
+      e.SumOfTerms(),
       e.rms_grey,
       e.observations,
       e.clamped,
@@ -108,7 +109,7 @@ Trace RunSchedule(const TextureProblem& problem,
 
 std::string TraceCsv(const Trace& trace) {
   std::string csv =
-      "level,round,phase,E_c,E_p_m2,E_s_px2,E_tex,E_prior,E_depth,rms_grey_255,"
+      "level,round,phase,E_c,E_p_m2,E_s_px2,E_tex,E_prior,E_depth,E_terms,rms_grey_255,"
       "observations,clamped,behind,lost,accepted,problems,iterations,reverted,"
       "wall_s,cpu_s\n";
   csv += CsvLine(0, 0, "initial", trace.initial, nullptr, 0, 0);
