@@ -10,14 +10,15 @@ set(may_render util geometry mesh render)
 set(may_texture util geometry mesh rgbd render texture)
 set(may_costs util geometry costs)
 set(may_problems util geometry mesh rgbd render texture costs problems)
+set(may_terms util geometry texture costs problems terms)
 set(may_schedule util geometry texture costs problems schedule)
 set(may_eval util geometry mesh rgbd render texture eval)
 set(may_synth util geometry mesh rgbd render synth)
-set(may_pipeline util geometry mesh rgbd render texture costs problems schedule
-                 eval synth pipeline)
+set(may_pipeline util geometry mesh rgbd render texture costs problems terms
+                 schedule eval synth pipeline)
 set(may_ablate util ablate)
-set(layers util geometry mesh rgbd render texture costs problems schedule eval
-           synth pipeline ablate)
+set(layers util geometry mesh rgbd render texture costs problems terms schedule
+           eval synth pipeline ablate)
 
 foreach(layer IN LISTS layers)
   file(GLOB_RECURSE sources ${ROOT}/src/${layer}/*.h ${ROOT}/src/${layer}/*.cc)

@@ -32,6 +32,7 @@ std::vector<FlagChoices> MakeTable() {
       {"gauge_strength", {}, true},
       {"lambda1_share", {}, true},
       {"lambda2", {}, true},
+      {"terms", {}, true},
       {"smoothing", {}, true},
       {"warp_columns", {}, true},
       {"warp_rows", {}, true},

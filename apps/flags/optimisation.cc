@@ -6,6 +6,7 @@
 
 #include "apps/flags/choices.h"
 #include "problems/formulation.h"
+#include "terms/term_kinds.h"
 
 using facet::EnergyWeights;
 using facet::PhotometricOptions;
@@ -53,6 +54,7 @@ DEFINE_double(lambda1_share,
 DEFINE_double(lambda2,
               EnergyWeights().lambda2,
               "weight of the warp's size E_s (paper: 0.1)");
+DEFINE_string(terms, "none", facet::TermsHelp());
 DEFINE_string(gauge, facet::AxisDefault("gauge"), facet::AxisHelp("gauge"));
 DEFINE_double(gauge_sigma_mm, 10, "prior: standard deviation of a camera [mm]");
 DEFINE_double(gauge_sigma_deg, 0.3, "prior: standard deviation of a rotation");
@@ -106,6 +108,7 @@ void OptimisationOptionsFromFlags(PhotometricOptions* options) {
   p.warp_rows = FLAGS_warp_rows;
   p.weights.lambda1_share = FLAGS_lambda1_share;
   p.weights.lambda2 = FLAGS_lambda2;
+  p.terms = ParseTerms(FLAGS_terms);
   const auto gauge = static_cast<Gauge>(Choose("gauge", FLAGS_gauge));
   p.solver.remove_common_motion = gauge == Gauge::kMean;
   p.weights.pose_prior = gauge == Gauge::kMean || gauge == Gauge::kPrior;

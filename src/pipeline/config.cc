@@ -67,6 +67,8 @@ json KeyframeSettings(const ReconstructOptions& o) {
 json PhotometricSettings(const ReconstructOptions& o) {
   const VisibilityOptions& v = o.visibility;
   const PhotometricOptions& p = o.photometric;
+  json terms = json::object();
+  for (const WeightedTerm& term : p.terms) terms[term.name] = term.weight;
   return {{"plane_init", static_cast<int>(o.plane_init)},
           {"texel_size_m", o.atlas.texel_size_m},
           {"stride", p.stride},
@@ -100,6 +102,7 @@ json PhotometricSettings(const ReconstructOptions& o) {
           {"prior_rotation_rad", p.weights.prior.rotation_rad},
           {"prior_translation_m", p.weights.prior.translation_m},
           {"depth_weight", p.weights.depth_weight},
+          {"terms", terms},
           {"prior_strength", p.weights.prior_strength},
           {"image_margin_px", v.image_margin_px},
           {"test_occlusion", v.test_occlusion},

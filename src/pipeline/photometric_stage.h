@@ -16,6 +16,7 @@
 #include "problems/texture_problem.h"
 #include "rgbd/sequence.h"
 #include "schedule/run_schedule.h"
+#include "terms/term_kinds.h"
 #include "texture/atlas.h"
 #include "texture/keyframe_images.h"
 #include "texture/observations.h"
@@ -47,6 +48,7 @@ struct PhotometricOptions {
   Formulation formulation;
   SolverConfig solver;
   EnergyWeights weights;  // lambda1 and texel_weight are computed
+  std::vector<WeightedTerm> terms;  // beside the paper's
 };
 
 struct PhotometricResult {

@@ -116,6 +116,31 @@ TEST(CliAblate, WritesItsOutputsAndSkipsWhatIsDone) {
   }
 }
 
+// What docs/add-a-residual.md promises: a term of terms/term_kinds.cc has a row
+// without a line of code in facet-ablate. Breaks if the term does nothing, or if
+// its energies are no longer those of the paper's terms.
+TEST(CliAblate, HasARowForATerm) {
+  const TempDir dir;
+  const std::string folder = dir / "abl";
+  ExpectSuccess(
+      Ablate(folder, {"--vary=terms=none,manhattan:1,manhattan:100"}));
+  const auto rows = Results(folder);
+  ASSERT_EQ(rows.size(), 3u);
+  for (const auto& row : rows) {
+    EXPECT_EQ(row.at("status"), "ok");
+    EXPECT_EQ(row.at("comparable"), "yes");
+    EXPECT_EQ(row.at("E_tex_initial"), rows[0].at("E_tex_initial"));
+  }
+  EXPECT_EQ(rows[1].at("terms"), "manhattan:1");
+  EXPECT_GE(std::stod(rows[2].at("E_tex")), std::stod(rows[0].at("E_tex")));
+  EXPECT_NE(rows[2].at("E_tex"), rows[0].at("E_tex"));
+  EXPECT_NE(ReadFile(folder + "/table.md").find("manhattan:100"),
+            std::string::npos);
+  const Outcome refused = Ablate(dir / "no", {"--vary=terms=none,manhatten:1"});
+  EXPECT_NE(refused.code, 0);
+  EXPECT_NE(refused.err.find("manhattan"), std::string::npos) << refused.err;
+}
+
 // Starts facet-ablate and leaves it running.
 pid_t StartAblation(const std::string& output,
                     const std::vector<std::string>& extra) {
