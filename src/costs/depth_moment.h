@@ -18,8 +18,9 @@
 
 #include <ceres/autodiff_cost_function.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+
+#include "costs/moment_factor.h"
 
 namespace facet {
 
@@ -28,12 +29,7 @@ class DepthMomentCost {
   DepthMomentCost(const Eigen::Matrix4d& moment,
                   const Eigen::Vector3d& anchor,
                   double weight)
-      : anchor_(anchor) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(moment);
-    factor_ =
-        (weight * eigen.eigenvalues().cwiseMax(0.0)).cwiseSqrt().asDiagonal() *
-        eigen.eigenvectors().transpose();
-  }
+      : factor_(MomentFactor(moment, weight)), anchor_(anchor) {}
 
   template <typename T>
   bool operator()(const T* pose, const T* plane, T* residual) const {

@@ -15,20 +15,16 @@
 #include <ceres/sized_cost_function.h>
 
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
+
+#include "costs/moment_factor.h"
 
 namespace facet {
 
 class PlaneMomentCost : public ceres::SizedCostFunction<4, 4> {
  public:
   // `weight` multiplies the squared residuals.
-  PlaneMomentCost(const Eigen::Matrix4d& moment, double weight) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(moment);
-    factor_ = (weight * eigen.eigenvalues().cwiseMax(0.0))
-                  .cwiseSqrt()
-                  .asDiagonal() *
-              eigen.eigenvectors().transpose();
-  }
+  PlaneMomentCost(const Eigen::Matrix4d& moment, double weight)
+      : factor_(MomentFactor(moment, weight)) {}
 
   bool Evaluate(double const* const* parameters,
                 double* residuals,
