@@ -3,9 +3,10 @@
 //
 // facet-reconstruct: an RGB-D scan and its dense mesh in, a light textured mesh
 // of planes out.
+#include "apps/flags/reconstruct.h"
+
 #include <gflags/gflags.h>
 
-#include "apps/flags/reconstruct.h"
 #include "apps/init_app.h"
 #include "pipeline/reconstruct.h"
 #include "pipeline/stage_clock.h"
@@ -24,8 +25,11 @@ int Main() {
   facet::SetNumThreads(FLAGS_threads);
   const nlohmann::json report = facet::Reconstruct(options);
   char line[300];
-  std::snprintf(line, sizeof(line), "done in %.1f s (%.1f CPU s): %s/report.json",
-                watch.WallSeconds(), watch.CpuSecondsSince(),
+  std::snprintf(line,
+                sizeof(line),
+                "done in %.1f s (%.1f CPU s): %s/report.json",
+                watch.WallSeconds(),
+                watch.CpuSecondsSince(),
                 options.output_path.c_str());
   facet::PrintLine(line);
   return 0;

@@ -70,9 +70,7 @@ DEFINE_string(manifold,
 DEFINE_string(sampling,
               facet::AxisDefault("sampling"),
               facet::AxisHelp("sampling"));
-DEFINE_string(loss,
-              facet::AxisDefault("loss"),
-              facet::AxisHelp("loss"));
+DEFINE_string(loss, facet::AxisDefault("loss"), facet::AxisHelp("loss"));
 DEFINE_string(out_of_image,
               facet::AxisDefault("out_of_image"),
               facet::AxisHelp("out_of_image"));

@@ -1,8 +1,9 @@
 // Copyright (c) 2026 The facet authors
 // SPDX-License-Identifier: MIT
 //
-// A plane that should be perpendicular to a given axis: a wall, floor or table of
-// a room built at right angles. The worked example of docs/add-a-residual.md.
+// A plane that should be perpendicular to a given axis: a wall, floor or table
+// of a room built at right angles. The worked example of
+// docs/add-a-residual.md.
 //
 //   E = weight |n x a|^2 = weight sin^2(angle between normal and axis)
 //

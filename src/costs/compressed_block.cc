@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "costs/compressed_block.h"
 
+#include <glog/logging.h>
+
 #include <Eigen/Core>
 #include <cmath>
-
-#include <glog/logging.h>
 
 namespace facet {
 

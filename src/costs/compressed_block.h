@@ -17,8 +17,8 @@
 namespace facet {
 
 // Relative diagonal shift of J^T J before factoring. The Gram matrix is summed
-// from float lanes and may be indefinite by rounding; 4e-6 of the diagonal keeps
-// the factor meaningful, leaves cost and gradient exact and changes the
+// from float lanes and may be indefinite by rounding; 4e-6 of the diagonal
+// keeps the factor meaningful, leaves cost and gradient exact and changes the
 // Hessian by far less than Levenberg-Marquardt damping does.
 inline constexpr double kGramShift = 4e-6;
 

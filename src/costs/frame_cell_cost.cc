@@ -64,9 +64,16 @@ bool FrameCellCost::Evaluate(double const* const* parameters,
   const int n = with_warp_ ? 14 : 6;
   double gram[GramSize(14)] = {};
   PhotoCounts counts;
-  const double squares = GetPhotoKernel().frame_cell(
-      frame, static_cast<float>(cell_a_), static_cast<float>(cell_b_), texels_,
-      ids_, num_ids_, with_warp_, jacobians ? gram : nullptr, &counts);
+  const double squares =
+      GetPhotoKernel().frame_cell(frame,
+                                  static_cast<float>(cell_a_),
+                                  static_cast<float>(cell_b_),
+                                  texels_,
+                                  ids_,
+                                  num_ids_,
+                                  with_warp_,
+                                  jacobians ? gram : nullptr,
+                                  &counts);
   if (!jacobians) {
     std::fill(residuals, residuals + n + 1, 0.0);
     residuals[0] = std::sqrt(weight_ * squares);
@@ -77,8 +84,8 @@ bool FrameCellCost::Evaluate(double const* const* parameters,
   const double scale = std::sqrt(weight_);
   for (int i = 0; i <= n; ++i) residuals[i] *= scale;
   const Eigen::Map<
-      const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic,
-                          Eigen::RowMajor>>
+      const Eigen::
+          Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>
       u(rows, n + 1, n);
   if (jacobians[0]) {
     Eigen::Map<

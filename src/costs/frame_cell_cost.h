@@ -1,9 +1,9 @@
 // Copyright (c) 2026 The facet authors
 // SPDX-License-Identifier: MIT
 //
-// E_c of the texels of one keyframe that fall into one cell of its warp lattice,
-// compressed (costs/compressed_block.h): the production block of the (T, F)
-// step.
+// E_c of the texels of one keyframe that fall into one cell of its warp
+// lattice, compressed (costs/compressed_block.h): the production block of the
+// (T, F) step.
 //
 // Residual    15 rows with warp, 7 without
 // Parameters  pose cam_from_world                       7  (se3_manifold.h)

@@ -1,7 +1,8 @@
 // Copyright (c) 2026 The facet authors
 // SPDX-License-Identifier: MIT
 //
-// A quadratic form as residuals: weight x^T M x = |L^T x|^2 with weight M = L L^T.
+// A quadratic form as residuals: weight x^T M x = |L^T x|^2 with weight M = L
+// L^T.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,9 +15,7 @@ namespace facet {
 inline Eigen::Matrix4d MomentFactor(const Eigen::Matrix4d& moment,
                                     double weight) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(moment);
-  return (weight * eigen.eigenvalues().cwiseMax(0.0))
-             .cwiseSqrt()
-             .asDiagonal() *
+  return (weight * eigen.eigenvalues().cwiseMax(0.0)).cwiseSqrt().asDiagonal() *
          eigen.eigenvectors().transpose();
 }
 

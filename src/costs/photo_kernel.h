@@ -32,13 +32,14 @@ struct PhotoFrame {
   int width = 0, height = 0;     // [px]
   ptrdiff_t stride = 0;          // elements
   float fx = 0, fy = 0, cx = 0, cy = 0;
-  float r[9] = {};               // rotation of cam_from_world, row-major
+  float r[9] = {};  // rotation of cam_from_world, row-major
   float t[3] = {};
-  const float* warp = nullptr;   // 2 * columns * rows, or null: no warp
-  int columns = 0, rows = 0;     // control vertices
+  const float* warp = nullptr;  // 2 * columns * rows, or null: no warp
+  int columns = 0, rows = 0;    // control vertices
   float inverse_cell_width = 0, inverse_cell_height = 0;  // [1/px]
   Sampling sampling = Sampling::kBilinear;
-  const float* gradient_x = nullptr;  // Sampling::kScharr: of the image's stride
+  const float* gradient_x =
+      nullptr;  // Sampling::kScharr: of the image's stride
   const float* gradient_y = nullptr;
   LossKind loss = LossKind::kSquared;
   float loss_scale = 1;  // [intensity]
@@ -114,9 +115,9 @@ struct PhotoKernel {
                        double* gram,
                        PhotoCounts* counts);
 
-  // Sum rho(r^2) over texels given as mesh points p of one plane (n_x, n_y, n_z, d)
-  // about the anchor c. With `gram` also the Gram matrix over the four ambient
-  // plane parameters. gram is added to.
+  // Sum rho(r^2) over texels given as mesh points p of one plane (n_x, n_y,
+  // n_z, d) about the anchor c. With `gram` also the Gram matrix over the four
+  // ambient plane parameters. gram is added to.
   double (*plane_segment)(const PhotoFrame& frame,
                           const float plane[4],
                           const float anchor[3],

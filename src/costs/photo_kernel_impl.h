@@ -199,8 +199,8 @@ double PlaneSegment(const PhotoFrame& frame,
 }
 
 extern const PhotoKernel kKernel;
-const PhotoKernel kKernel = {FACET_KERNEL_NAME, Sample, SampleGradient,
-                             FrameCell, PlaneSegment};
+const PhotoKernel kKernel = {
+    FACET_KERNEL_NAME, Sample, SampleGradient, FrameCell, PlaneSegment};
 
 }  // namespace FACET_KERNEL_NAMESPACE
 }  // namespace facet

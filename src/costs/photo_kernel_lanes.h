@@ -23,13 +23,13 @@ struct alignas(64) Lane {
 
 // All that one chunk of observations needs.
 struct Chunk {
-  Lane qx, qy, qz, color;       // input points
-  Lane x, y, z;                 // camera coordinates
-  Lane u, v;                    // warped pixel
-  Lane d00, d10, d01, d11;      // warp weights
-  Lane dxx, dxy, dyx, dyy;      // D = dF/du, row-major
-  Lane value, ix, iy;           // I and its gradient at F(u)
-  Lane valid;                   // 1, or 0 in the padding
+  Lane qx, qy, qz, color;   // input points
+  Lane x, y, z;             // camera coordinates
+  Lane u, v;                // warped pixel
+  Lane d00, d10, d01, d11;  // warp weights
+  Lane dxx, dxy, dyx, dyy;  // D = dF/du, row-major
+  Lane value, ix, iy;       // I and its gradient at F(u)
+  Lane valid;               // 1, or 0 in the padding
 };
 
 inline void Load(const PhotoTexel* texels,
@@ -124,10 +124,10 @@ inline void WarpAnywhere(const PhotoFrame& f, Chunk* c) {
     const float f11x = f.warp[k + down + 2], f11y = f.warp[k + down + 3];
     c->dxx.v[i] = 1 + ((f10x - f00x) * (1 - be) + (f11x - f01x) * be) *
                           f.inverse_cell_width;
-    c->dyx.v[i] = ((f10y - f00y) * (1 - be) + (f11y - f01y) * be) *
-                  f.inverse_cell_width;
-    c->dxy.v[i] = ((f01x - f00x) * (1 - al) + (f11x - f10x) * al) *
-                  f.inverse_cell_height;
+    c->dyx.v[i] =
+        ((f10y - f00y) * (1 - be) + (f11y - f01y) * be) * f.inverse_cell_width;
+    c->dxy.v[i] =
+        ((f01x - f00x) * (1 - al) + (f11x - f10x) * al) * f.inverse_cell_height;
     c->dyy.v[i] = 1 + ((f01y - f00y) * (1 - al) + (f11y - f10y) * al) *
                           f.inverse_cell_height;
     const float w00 = (1 - al) * (1 - be), w10 = al * (1 - be);

@@ -9,9 +9,7 @@ namespace facet {
 namespace FACET_KERNEL_NAMESPACE {
 
 // Bilinear value and its exact gradient, clamped to the image.
-inline void SampleBilinear(const PhotoFrame& f,
-                           Chunk* c,
-                           PhotoCounts* counts) {
+inline void SampleBilinear(const PhotoFrame& f, Chunk* c, PhotoCounts* counts) {
   const float max_u = static_cast<float>(f.width - 1);
   const float max_v = static_cast<float>(f.height - 1);
   const float max_x = static_cast<float>(f.width - 2);
@@ -100,8 +98,8 @@ __attribute__((noinline)) void SampleBicubic(const PhotoFrame& f,
     const float w3 = a * a * (-0.5f + 0.5f * a);
     const float d0 = -0.5f + a * (2 - 1.5f * a), d1 = a * (-5 + 4.5f * a);
     const float d2 = 0.5f + a * (4 - 4.5f * a), d3 = a * (-1 + 1.5f * a);
-    const int rows[4] = {y0 * stride, y * stride, (y + 1) * stride,
-                         y3 * stride};
+    const int rows[4] = {
+        y0 * stride, y * stride, (y + 1) * stride, y3 * stride};
     const float v0 = b * (-0.5f + b * (1 - 0.5f * b));
     const float v1 = 1 + b * b * (-2.5f + 1.5f * b);
     const float v2 = b * (0.5f + b * (2 - 1.5f * b));

@@ -82,8 +82,9 @@ class PhotometricCost {
   }
 
   static ceres::CostFunction* Create(const PhotometricCost& cost) {
-    return new ceres::AutoDiffCostFunction<PhotometricCost, 1, 7, 4, 1, 2, 2, 2,
-                                           2>(new PhotometricCost(cost));
+    return new ceres::
+        AutoDiffCostFunction<PhotometricCost, 1, 7, 4, 1, 2, 2, 2, 2>(
+            new PhotometricCost(cost));
   }
 
  private:
@@ -96,8 +97,8 @@ class PhotometricCost {
 };
 
 // The same with the plane (n, d) and the colour bound: a residual of the pose
-// and warp step. Parameters: pose 7, and if `with_warp` f00, f10, f01, f11 of 2;
-// else there is no warp.
+// and warp step. Parameters: pose 7, and if `with_warp` f00, f10, f01, f11 of
+// 2; else there is no warp.
 class PhotometricFrameCost {
  public:
   PhotometricFrameCost(const PhotometricCost& cost,

@@ -29,9 +29,14 @@ bool PlanePhotometricCost::Evaluate(double const* const* parameters,
   double squares = 0;
   PhotoCounts counts;
   for (const PlaneSegment& segment : segments_) {
-    squares += GetPhotoKernel().plane_segment(
-        frames_[segment.keyframe], plane, anchor_, texels_, segment.ids,
-        segment.num_ids, want_jacobian ? gram : nullptr, &counts);
+    squares += GetPhotoKernel().plane_segment(frames_[segment.keyframe],
+                                              plane,
+                                              anchor_,
+                                              texels_,
+                                              segment.ids,
+                                              segment.num_ids,
+                                              want_jacobian ? gram : nullptr,
+                                              &counts);
   }
   if (!want_jacobian) {
     std::fill(residuals, residuals + 5, 0.0);

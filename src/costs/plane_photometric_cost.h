@@ -8,7 +8,8 @@
 // Parameters  plane (n_x, n_y, n_z, d) about its anchor  4  (plane_manifold.h)
 // Constants   texel points p and colours C; keyframe poses and warps
 // Weight      `weight` multiplies the squared residuals (texel area weight)
-// Reference   costs/photometric.h; test: tests/costs/plane_photometric_cost_test.cc
+// Reference   costs/photometric.h; test:
+// tests/costs/plane_photometric_cost_test.cc
 #pragma once
 
 #include <ceres/sized_cost_function.h>

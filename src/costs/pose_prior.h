@@ -1,8 +1,9 @@
 // Copyright (c) 2026 The facet authors
 // SPDX-License-Identifier: MIT
 //
-// Pose prior: holds the gauge (method, Sec. 7.6). E_c alone does not notice when
-// all poses and planes move together; without a prior the model slides away.
+// Pose prior: holds the gauge (method, Sec. 7.6). E_c alone does not notice
+// when all poses and planes move together; without a prior the model slides
+// away.
 //
 //   E_prior = sum_i | W (T_i T_i0^-1 - identity) |^2
 //

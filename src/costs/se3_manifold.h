@@ -6,16 +6,17 @@
 // Layout of a pose block, cam_from_world: (q_x, q_y, q_z, q_w, t_x, t_y, t_z).
 // Increments xi = (omega, upsilon):
 //
-//   left        T <- Exp(xi) T, the local linearisation of the paper (Sec. 3.3);
+//   left        T <- Exp(xi) T, the local linearisation of the paper
+//   (Sec. 3.3);
 //               y = T q changes by omega x y + upsilon
 //   right       T <- T Exp(xi): about the camera's axes seen from the world
 //   quaternion  R and t apart: q <- Exp(2 omega) q, t <- t + upsilon
 //
-// Cost functions compute the Jacobian J_xi for the left increment and lift it to
-// the ambient space, J = J_xi (P^T P)^-1 P^T with P = PlusJacobian of the left
-// manifold: then J P = J_xi. The columns of the PlusJacobian P' of any other
-// manifold over this layout lie in the range of P, P' = P A, so that J P' =
-// J_xi A is its Jacobian without any code in the costs (method, Sec. 7.2).
+// Cost functions compute the Jacobian J_xi for the left increment and lift it
+// to the ambient space, J = J_xi (P^T P)^-1 P^T with P = PlusJacobian of the
+// left manifold: then J P = J_xi. The columns of the PlusJacobian P' of any
+// other manifold over this layout lie in the range of P, P' = P A, so that J P'
+// = J_xi A is its Jacobian without any code in the costs (method, Sec. 7.2).
 #pragma once
 
 #include <ceres/manifold.h>

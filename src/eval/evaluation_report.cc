@@ -346,11 +346,11 @@ nlohmann::json ToJson(const ModelReport& r) {
   if (r.planes) result["planes"] = ToJson(*r.planes);
   if (r.initial_planes) result["initial_planes"] = ToJson(*r.initial_planes);
   for (const TraceErrors& e : r.trace) {
-    result["trace"].push_back({{"ate_mm", Number(1000 * e.ate_m)},
-                               {"rotation_deg", Number(e.rotation_deg)},
-                               {"plane_angle_deg", Number(e.plane_angle_deg)},
-                               {"plane_offset_mm",
-                                Number(1000 * e.plane_offset_m)}});
+    result["trace"].push_back(
+        {{"ate_mm", Number(1000 * e.ate_m)},
+         {"rotation_deg", Number(e.rotation_deg)},
+         {"plane_angle_deg", Number(e.plane_angle_deg)},
+         {"plane_offset_mm", Number(1000 * e.plane_offset_m)}});
   }
   return result;
 }

@@ -23,7 +23,9 @@ struct Sample {
 // I(u, v) with grad I. Outside the pixel centres' rectangle the point is
 // clamped to the border and flagged; the derivative across that border is then
 // 0, which is the exact derivative of the clamped function.
-inline Sample SampleBilinear(const ImageView<float>& image, double u, double v) {
+inline Sample SampleBilinear(const ImageView<float>& image,
+                             double u,
+                             double v) {
   Sample s;
   const double max_u = image.width - 1.0, max_v = image.height - 1.0;
   const bool u_inside = u >= 0 && u <= max_u, v_inside = v >= 0 && v <= max_v;
@@ -101,16 +103,14 @@ inline void ScharrGradients(const ImageView<float>& image,
     const int up = std::max(y - 1, 0), down = std::min(y + 1, image.height - 1);
     for (int x = 0; x < image.width; ++x) {
       const int l = std::max(x - 1, 0), r = std::min(x + 1, image.width - 1);
-      dx_row[x] =
-          (3 * (image.At(r, up) - image.At(l, up)) +
-           10 * (image.At(r, y) - image.At(l, y)) +
-           3 * (image.At(r, down) - image.At(l, down))) /
-          32;
-      dy_row[x] =
-          (3 * (image.At(l, down) - image.At(l, up)) +
-           10 * (image.At(x, down) - image.At(x, up)) +
-           3 * (image.At(r, down) - image.At(r, up))) /
-          32;
+      dx_row[x] = (3 * (image.At(r, up) - image.At(l, up)) +
+                   10 * (image.At(r, y) - image.At(l, y)) +
+                   3 * (image.At(r, down) - image.At(l, down))) /
+                  32;
+      dy_row[x] = (3 * (image.At(l, down) - image.At(l, up)) +
+                   10 * (image.At(x, down) - image.At(x, up)) +
+                   3 * (image.At(r, down) - image.At(r, up))) /
+                  32;
     }
   }
 }

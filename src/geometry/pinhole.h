@@ -37,8 +37,12 @@ struct Pinhole {
   // The camera of pyramid level l: f / 2^l, (c + 0.5) / 2^l - 0.5.
   Pinhole Level(int level) const {
     const double s = 1.0 / (1 << level);
-    return {fx * s,           fy * s,         (cx + 0.5) * s - 0.5,
-            (cy + 0.5) * s - 0.5, width >> level, height >> level};
+    return {fx * s,
+            fy * s,
+            (cx + 0.5) * s - 0.5,
+            (cy + 0.5) * s - 0.5,
+            width >> level,
+            height >> level};
   }
 };
 

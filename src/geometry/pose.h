@@ -76,8 +76,8 @@ inline Pose ExpSe3(const Vector6d& xi) {
   Eigen::Quaterniond q;
   Eigen::Matrix3d v;
   if (theta < 1e-6) {
-    q = Eigen::Quaterniond(1, 0.5 * omega.x(), 0.5 * omega.y(),
-                           0.5 * omega.z());
+    q = Eigen::Quaterniond(
+        1, 0.5 * omega.x(), 0.5 * omega.y(), 0.5 * omega.z());
     v = Eigen::Matrix3d::Identity() + 0.5 * w + w * w / 6.0;
   } else {
     q = Eigen::Quaterniond(Eigen::AngleAxisd(theta, omega / theta));
@@ -95,18 +95,17 @@ inline Vector6d LogSe3(const Pose& pose) {
   if (q.w() < 0) q.coeffs() = -q.coeffs();
   const double sine = q.vec().norm();
   const double theta = 2.0 * std::atan2(sine, q.w());
-  const Eigen::Vector3d omega =
-      sine < 1e-9 ? Eigen::Vector3d(2.0 * q.vec())
-                  : Eigen::Vector3d(theta / sine * q.vec());
+  const Eigen::Vector3d omega = sine < 1e-9
+                                    ? Eigen::Vector3d(2.0 * q.vec())
+                                    : Eigen::Vector3d(theta / sine * q.vec());
   const Eigen::Matrix3d w = Skew(omega);
-  Eigen::Matrix3d v_inverse =
-      Eigen::Matrix3d::Identity() - 0.5 * w;
+  Eigen::Matrix3d v_inverse = Eigen::Matrix3d::Identity() - 0.5 * w;
   if (theta < 1e-4) {
     v_inverse += w * w / 12.0;
   } else {
     const double half = 0.5 * theta;
-    v_inverse +=
-        (1.0 - half * std::cos(half) / std::sin(half)) / (theta * theta) * w * w;
+    v_inverse += (1.0 - half * std::cos(half) / std::sin(half)) /
+                 (theta * theta) * w * w;
   }
   Vector6d xi;
   xi << omega, v_inverse * pose.translation;
@@ -115,8 +114,8 @@ inline Vector6d LogSe3(const Pose& pose) {
 
 // Rotation angle of a pose, in radians in [0, pi].
 inline double RotationAngle(const Pose& pose) {
-  return 2.0 * std::atan2(pose.rotation.vec().norm(),
-                          std::abs(pose.rotation.w()));
+  return 2.0 *
+         std::atan2(pose.rotation.vec().norm(), std::abs(pose.rotation.w()));
 }
 
 }  // namespace facet

@@ -18,8 +18,8 @@ namespace facet {
 
 // Where a pixel lies in the lattice: cell (a, b) and local coordinates.
 struct WarpCell {
-  int a = 0, b = 0;             // cell column and row
-  double alpha = 0, beta = 0;   // in [0, 1] inside the image
+  int a = 0, b = 0;            // cell column and row
+  double alpha = 0, beta = 0;  // in [0, 1] inside the image
 };
 
 struct WarpLattice {
@@ -52,7 +52,8 @@ struct WarpLattice {
     const double* f10 = f00 + 2;
     const double* f01 = f00 + 2 * columns;
     const double* f11 = f01 + 2;
-    const double w00 = (1 - c.alpha) * (1 - c.beta), w10 = c.alpha * (1 - c.beta);
+    const double w00 = (1 - c.alpha) * (1 - c.beta),
+                 w10 = c.alpha * (1 - c.beta);
     const double w01 = (1 - c.alpha) * c.beta, w11 = c.alpha * c.beta;
     return {u.x() + w00 * f00[0] + w10 * f10[0] + w01 * f01[0] + w11 * f11[0],
             u.y() + w00 * f00[1] + w10 * f10[1] + w01 * f01[1] + w11 * f11[1]};

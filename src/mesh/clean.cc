@@ -220,8 +220,7 @@ CleanReport CleanMesh(const CleanOptions& options, TriMesh* mesh) {
   DropUnreferenced(mesh, &report);
   if (mesh->faces.empty()) {
     throw InputError("no face of the mesh is left after cleaning (" +
-                     report.Summary() +
-                     "); give a mesh with valid faces");
+                     report.Summary() + "); give a mesh with valid faces");
   }
   CheckUnits(options, *mesh, &report);
   if (broken > 0 || report.non_finite_vertices > 0) {

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: MIT
 //
 // Mesh files: PLY (ascii, binary little and big endian, properties in any order
-// and of any scalar type, polygons fan-triangulated, optional red/green/blue per
-// vertex) and OBJ (v, f with v, v/vt, v//vn, v/vt/vn, negative indices). Method,
-// Sec. 1.7. Faces come back as a polygon soup: nothing is checked but syntax and
-// index syntax; clean with mesh/clean.h.
+// and of any scalar type, polygons fan-triangulated, optional red/green/blue
+// per vertex) and OBJ (v, f with v, v/vt, v//vn, v/vt/vn, negative indices).
+// Method, Sec. 1.7. Faces come back as a polygon soup: nothing is checked but
+// syntax and index syntax; clean with mesh/clean.h.
 #pragma once
 
 #include <string>

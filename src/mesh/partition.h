@@ -49,8 +49,8 @@ struct PartitionReport {
 // their faces are neighbours. Clusters come in the order of their first faces.
 // Stops at the number of connected components if that is more than the target
 // (warning). Of a mesh with fewer faces than the target every face becomes a
-// cluster (warning). Throws OptionsError for senseless options. Deterministic, one thread; about 160 bytes
-// a face beside the mesh.
+// cluster (warning). Throws OptionsError for senseless options. Deterministic,
+// one thread; about 160 bytes a face beside the mesh.
 PlanarPartition PartitionMesh(const TriMesh& mesh,
                               const PartitionOptions& options,
                               PartitionReport* report = nullptr);

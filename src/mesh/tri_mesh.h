@@ -15,9 +15,9 @@ namespace facet {
 using Rgb = std::array<uint8_t, 3>;
 
 struct TriMesh {
-  std::vector<Eigen::Vector3d> vertices;      // [m]
-  std::vector<std::array<int, 3>> faces;      // counter-clockwise from outside
-  std::vector<Rgb> vertex_colors;             // empty, or one a vertex
+  std::vector<Eigen::Vector3d> vertices;  // [m]
+  std::vector<std::array<int, 3>> faces;  // counter-clockwise from outside
+  std::vector<Rgb> vertex_colors;         // empty, or one a vertex
 
   size_t NumVertices() const { return vertices.size(); }
   size_t NumFaces() const { return faces.size(); }

@@ -43,8 +43,8 @@ std::vector<NumberedPose> RunPoses(const RgbdSequence& sequence,
     numbers.push_back(sequence.frames()[i].number);
     before.push_back(sequence.color_cam_from_world(static_cast<int>(i)));
   }
-  const std::vector<Pose> after = PropagateCorrections(
-      numbers, before, usable_keyframes, cam_from_world);
+  const std::vector<Pose> after =
+      PropagateCorrections(numbers, before, usable_keyframes, cam_from_world);
   std::vector<NumberedPose> poses;
   for (size_t i = 0; i < numbers.size(); ++i) {
     poses.push_back({numbers[i], sequence.PoseFileFromColorCam(after[i])});
@@ -66,19 +66,19 @@ void WritePlanes(const ReconstructOptions& options, const ExportInput& input) {
     const Plane& before = input.initial_planes[j];
     const Plane& after = input.photometric.planes[j];
     const size_t frames = input.photometric.plane_frames[j];
-    json plane = {{"id", j},
-                  {"normal", ToJson(after.normal)},
-                  {"offset", after.offset},
-                  {"initial",
-                   {{"normal", ToJson(before.normal)},
-                    {"offset", before.offset}}},
-                  {"centroid", ToJson(cluster.centroid)},
-                  {"area_m2", cluster.area},
-                  {"dense_rms_m", cluster.rms},
-                  {"final_rms_m", refit.clusters[j].rms},
-                  {"faces", faces[j]},
-                  {"texels", input.photometric.plane_texels[j]},
-                  {"frames", frames}};
+    json plane = {
+        {"id", j},
+        {"normal", ToJson(after.normal)},
+        {"offset", after.offset},
+        {"initial",
+         {{"normal", ToJson(before.normal)}, {"offset", before.offset}}},
+        {"centroid", ToJson(cluster.centroid)},
+        {"area_m2", cluster.area},
+        {"dense_rms_m", cluster.rms},
+        {"final_rms_m", refit.clusters[j].rms},
+        {"faces", faces[j]},
+        {"texels", input.photometric.plane_texels[j]},
+        {"frames", frames}};
     if (frames == 0) plane["skipped"] = "no texel is seen by enough keyframes";
     planes.push_back(std::move(plane));
   }
@@ -108,12 +108,22 @@ TexturedMesh Bake(const ReconstructOptions& options,
                   BakeReport* report,
                   const std::vector<char>& only_faces = {}) {
   const RayScene scene(mesh);
-  return MakeModel(
-      input, mesh,
-      BakeTexture(mesh, planes, input.atlas, scene, input.sequence,
-                  input.keyframes, images, cam_from_world,
-                  input.photometric.lattice, warps, options.visibility,
-                  options.bake, report, only_faces));
+  return MakeModel(input,
+                   mesh,
+                   BakeTexture(mesh,
+                               planes,
+                               input.atlas,
+                               scene,
+                               input.sequence,
+                               input.keyframes,
+                               images,
+                               cam_from_world,
+                               input.photometric.lattice,
+                               warps,
+                               options.visibility,
+                               options.bake,
+                               report,
+                               only_faces));
 }
 
 void WriteMasks(const ReconstructOptions& options, const BakeReport& report) {
@@ -154,8 +164,8 @@ void WritePreviews(const ReconstructOptions& options,
   {
     const std::vector<SampledView> sampled =
         SampleViews(RayScene(model.mesh), model.mesh, views);
-    DrawWireframe(dir, sampled, model.mesh,
-                  input.simplified.partition.face_cluster);
+    DrawWireframe(
+        dir, sampled, model.mesh, input.simplified.partition.face_cluster);
     DrawTextured(dir, "after", sampled, model);
   }
   const TriMesh& start = input.simplified.mesh;
@@ -163,9 +173,15 @@ void WritePreviews(const ReconstructOptions& options,
       SampleViews(RayScene(start), start, views);
   KeyframeImages as_taken = input.images;
   as_taken.exposures.clear();
-  const TexturedMesh before = Bake(
-      options, input, as_taken, start, input.initial_planes,
-      input.initial_cam_from_world, {}, nullptr, SeenFaces(start, sampled));
+  const TexturedMesh before = Bake(options,
+                                   input,
+                                   as_taken,
+                                   start,
+                                   input.initial_planes,
+                                   input.initial_cam_from_world,
+                                   {},
+                                   nullptr,
+                                   SeenFaces(start, sampled));
   DrawTextured(dir, "before", sampled, before);
 }
 
@@ -173,19 +189,27 @@ void WritePreviews(const ReconstructOptions& options,
 
 json ExportRun(const ReconstructOptions& options, const ExportInput& input) {
   const std::string& dir = options.output_path;
-  WritePly(dir + "/partition.ply", input.dense.mesh,
+  WritePly(dir + "/partition.ply",
+           input.dense.mesh,
            &input.dense.partition.face_cluster);
-  WritePly(dir + "/simplified.ply", input.simplified.mesh,
+  WritePly(dir + "/simplified.ply",
+           input.simplified.mesh,
            &input.simplified.partition.face_cluster);
-  WritePoses(dir + "/poses.txt",
-             RunPoses(input.sequence, input.keyframes,
-                      input.photometric.cam_from_world));
+  WritePoses(
+      dir + "/poses.txt",
+      RunPoses(
+          input.sequence, input.keyframes, input.photometric.cam_from_world));
   WritePlanes(options, input);
 
   BakeReport bake;
-  const TexturedMesh model = Bake(
-      options, input, input.images, input.final_mesh, input.photometric.planes,
-      input.photometric.cam_from_world, input.photometric.warps, &bake);
+  const TexturedMesh model = Bake(options,
+                                  input,
+                                  input.images,
+                                  input.final_mesh,
+                                  input.photometric.planes,
+                                  input.photometric.cam_from_world,
+                                  input.photometric.warps,
+                                  &bake);
   ExportObj(dir, model);
   ExportGlb(dir + "/mesh.glb", model);
   WriteMasks(options, bake);

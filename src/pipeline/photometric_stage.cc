@@ -55,15 +55,16 @@ constexpr size_t kExposureSamples = 1000000;
 
 std::string ExposureLine(const ExposureCalibration& exposure) {
   char line[200];
-  std::snprintf(line,
-                sizeof(line),
-                "  exposures: a grey of 0.5 becomes %.2f to %.2f; rms of colours "
-                "about their means %.2f -> %.2f of 255, %zu samples",
-                exposure.min_grey,
-                exposure.max_grey,
-                exposure.rms_before,
-                exposure.rms_after,
-                exposure.samples);
+  std::snprintf(
+      line,
+      sizeof(line),
+      "  exposures: a grey of 0.5 becomes %.2f to %.2f; rms of colours "
+      "about their means %.2f -> %.2f of 255, %zu samples",
+      exposure.min_grey,
+      exposure.max_grey,
+      exposure.rms_before,
+      exposure.rms_after,
+      exposure.samples);
   return line;
 }
 
@@ -304,9 +305,8 @@ PhotometricResult RunPhotometricStage(
                                          cam_from_world,
                                          *keyframe_images,
                                          options.exposure_calibration);
-    SetExposures(result.exposure.exposures,
-                 options.smoothing_sigma_px,
-                 keyframe_images);
+    SetExposures(
+        result.exposure.exposures, options.smoothing_sigma_px, keyframe_images);
     print(ExposureLine(result.exposure));
   }
   const KeyframeImages& images = *keyframe_images;

@@ -47,7 +47,7 @@ struct PhotometricOptions {
   StopRule stop;
   Formulation formulation;
   SolverConfig solver;
-  EnergyWeights weights;  // lambda1 and texel_weight are computed
+  EnergyWeights weights;            // lambda1 and texel_weight are computed
   std::vector<WeightedTerm> terms;  // beside the paper's
 };
 
@@ -69,8 +69,8 @@ struct PhotometricResult {
 
 // `planes` are the initial planes, one a cluster. `cam_from_world` are the
 // initial poses of the colour camera, one a keyframe. The exposures of
-// `keyframe_images` are set if they are calibrated. Prints the fixed-width table
-// of the phases through `print` (one line a call).
+// `keyframe_images` are set if they are calibrated. Prints the fixed-width
+// table of the phases through `print` (one line a call).
 PhotometricResult RunPhotometricStage(
     const TriMesh& mesh,
     const PlanarPartition& partition,

@@ -26,7 +26,9 @@ void Draw(const std::string& dir,
 }  // namespace
 
 void WritePng(const std::string& path, const Picture& picture) {
-  const cv::Mat rgb(picture.height, picture.width, CV_8UC3,
+  const cv::Mat rgb(picture.height,
+                    picture.width,
+                    CV_8UC3,
                     const_cast<uint8_t*>(picture.rgb.data()));
   cv::Mat bgr;
   cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
@@ -92,13 +94,17 @@ void DrawTextured(const std::string& dir,
                   const TexturedMesh& model) {
   DrawOptions options;
   options.shade = false;
-  Draw(dir, name, views, model.mesh,
-       [&](int face, double u, double v) -> Eigen::Vector3f {
-         return ColorAt(model, face, static_cast<float>(u),
-                        static_cast<float>(v)) /
-                255.0f;
-       },
-       options);
+  Draw(
+      dir,
+      name,
+      views,
+      model.mesh,
+      [&](int face, double u, double v) -> Eigen::Vector3f {
+        return ColorAt(
+                   model, face, static_cast<float>(u), static_cast<float>(v)) /
+               255.0f;
+      },
+      options);
 }
 
 }  // namespace facet

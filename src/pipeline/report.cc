@@ -58,8 +58,7 @@ json PhotometricReport(const PhotometricResult& result,
            {{"initial", ToJson(result.initial)},
             {"final", ToJson(result.final_terms)}}},
           {"slide", {{"mm", slide.mm}, {"deg", slide.deg}}},
-          {"phases",
-           {{"run", result.trace.rows.size()}, {"undone", rejected}}},
+          {"phases", {{"run", result.trace.rows.size()}, {"undone", rejected}}},
           {"visibility",
            {{"candidates", v.candidates},
             {"behind_or_far", v.behind_or_far},
@@ -93,15 +92,15 @@ json GeometryReport(const GeometrySummary& s) {
 void AddEnvironment(json* report) {
   utsname system{};
   uname(&system);
-  (*report)["versions"] = {
-      {"facet", FACET_VERSION},
-      {"ceres", CERES_VERSION_STRING},
-      {"eigen", std::to_string(EIGEN_WORLD_VERSION) + "." +
-                    std::to_string(EIGEN_MAJOR_VERSION) + "." +
-                    std::to_string(EIGEN_MINOR_VERSION)},
-      {"opencv", CV_VERSION},
-      {"compiler", __VERSION__},
-      {"kernel", GetPhotoKernel().name}};
+  (*report)["versions"] = {{"facet", FACET_VERSION},
+                           {"ceres", CERES_VERSION_STRING},
+                           {"eigen",
+                            std::to_string(EIGEN_WORLD_VERSION) + "." +
+                                std::to_string(EIGEN_MAJOR_VERSION) + "." +
+                                std::to_string(EIGEN_MINOR_VERSION)},
+                           {"opencv", CV_VERSION},
+                           {"compiler", __VERSION__},
+                           {"kernel", GetPhotoKernel().name}};
   (*report)["machine"] = {
       {"system", std::string(system.sysname) + " " + system.release},
       {"architecture", system.machine},

@@ -19,13 +19,16 @@ nlohmann::json StageClock::Finish(const std::string& summary) {
   const double wall = watch_.WallSeconds(), cpu = watch_.CpuSecondsSince();
   const double peak = PeakRssMb();
   char line[400];
-  std::snprintf(line, sizeof(line), "%-12s %7.1f s %8.0f MB  %s", name_.c_str(),
-                wall, peak, summary.c_str());
+  std::snprintf(line,
+                sizeof(line),
+                "%-12s %7.1f s %8.0f MB  %s",
+                name_.c_str(),
+                wall,
+                peak,
+                summary.c_str());
   PrintLine(line);
-  return {{"name", name_},
-          {"wall_s", wall},
-          {"cpu_s", cpu},
-          {"peak_rss_mb", peak}};
+  return {
+      {"name", name_}, {"wall_s", wall}, {"cpu_s", cpu}, {"peak_rss_mb", peak}};
 }
 
 }  // namespace facet

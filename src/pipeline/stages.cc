@@ -7,9 +7,12 @@
 namespace facet {
 
 const char* StageName(Stage stage) {
-  static const char* const kNames[kNumStages] = {
-      "partition", "simplify", "keyframes", "photometric", "geometry",
-      "export"};
+  static const char* const kNames[kNumStages] = {"partition",
+                                                 "simplify",
+                                                 "keyframes",
+                                                 "photometric",
+                                                 "geometry",
+                                                 "export"};
   return kNames[static_cast<int>(stage)];
 }
 
@@ -17,8 +20,8 @@ Stage ParseStage(const std::string& flag, const std::string& name) {
   std::string choices;
   for (int s = 0; s < kNumStages; ++s) {
     if (name == StageName(static_cast<Stage>(s))) return static_cast<Stage>(s);
-    choices += (s > 0 ? ", " : "") + std::string(StageName(
-                                         static_cast<Stage>(s)));
+    choices +=
+        (s > 0 ? ", " : "") + std::string(StageName(static_cast<Stage>(s)));
   }
   throw OptionsError("--" + flag + "=" + name + " is no stage: use one of " +
                      choices);

@@ -67,15 +67,15 @@ double EnergyTerms::SumOfTerms() const {
 }
 
 double EnergyTerms::RmsIntensity() const {
-  return observations == 0
-             ? 0.0
-             : std::sqrt(e_c / texel_weight / static_cast<double>(observations));
+  return observations == 0 ? 0.0
+                           : std::sqrt(e_c / texel_weight /
+                                       static_cast<double>(observations));
 }
 
 double EnergyTerms::ClampedShare() const {
-  return observations == 0 ? 0.0
-                           : static_cast<double>(clamped) /
-                                 static_cast<double>(observations);
+  return observations == 0
+             ? 0.0
+             : static_cast<double>(clamped) / static_cast<double>(observations);
 }
 
 EnergyTerms EvaluateEnergy(const TextureProblem& problem,

@@ -30,9 +30,9 @@
 namespace facet {
 
 struct EnergyWeights {
-  double lambda1 = 0;       // set by InitialLambda1
-  // Share of the paper's balance: 1 holds planes to the mesh as if all of E_c at
-  // the start were noise. Where poses are far off most of it is not.
+  double lambda1 = 0;  // set by InitialLambda1
+  // Share of the paper's balance: 1 holds planes to the mesh as if all of E_c
+  // at the start were noise. Where poses are far off most of it is not.
   double lambda1_share = 1;
   double lambda2 = 0.1;     // paper
   double texel_weight = 1;  // stride^2
@@ -65,9 +65,7 @@ struct EnergyTerms {
   size_t observations = 0, clamped = 0, behind = 0, lost = 0;
 
   double SumOfTerms() const;  // e_terms
-  double Objective() const {
-    return e_tex + e_prior + e_depth + SumOfTerms();
-  }
+  double Objective() const { return e_tex + e_prior + e_depth + SumOfTerms(); }
   double RmsIntensity() const;  // sqrt(mean rho), smoothed images, 0-1
   double ClampedShare() const;
   double texel_weight = 1;
@@ -80,9 +78,9 @@ EnergyTerms EvaluateEnergy(const TextureProblem& problem,
                            const ReconState& state,
                            bool with_rms_grey = false);
 
-// lambda1 = lambda1_share E_c / E_p at the initial state (paper, Sec. 3.3: share
-// 1), with E_p floored at (0.5 mm)^2 a texel; 1e3 when E_c is 0 (method, Sec.
-// 7.4).
+// lambda1 = lambda1_share E_c / E_p at the initial state (paper, Sec. 3.3:
+// share 1), with E_p floored at (0.5 mm)^2 a texel; 1e3 when E_c is 0 (method,
+// Sec. 7.4).
 double InitialLambda1(const TextureProblem& problem,
                       const EnergyWeights& weights,
                       const ReconState& initial_state);

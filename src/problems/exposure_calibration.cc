@@ -21,8 +21,8 @@ namespace {
 
 // What the keyframes see of the texels, texel by texel.
 struct SampleTable {
-  std::vector<size_t> begin;  // texels + 1
-  std::vector<int> keyframe;  // ascending within a texel
+  std::vector<size_t> begin;         // texels + 1
+  std::vector<int> keyframe;         // ascending within a texel
   std::vector<Eigen::Vector3f> rgb;  // 0-1; NaN where clipped or outside
 };
 
@@ -73,8 +73,8 @@ SampleTable SampleColors(const TexelSet& texels,
   ParallelFor(0, images.size(), [&](size_t k) {
     for (size_t i = observations.begin[k]; i < observations.begin[k + 1]; ++i) {
       const uint32_t id = observations.texel[i];
-      const Eigen::Vector3d q = planes[texels.plane[id]].Project(
-          texels.position[id].cast<double>());
+      const Eigen::Vector3d q =
+          planes[texels.plane[id]].Project(texels.position[id].cast<double>());
       const Eigen::Vector3d y = cam_from_world[k] * q;
       table.rgb[slot[i]] =
           y.z() > 0 ? ColorSeen(images.rgb[k], camera.Project(y), options)
@@ -111,7 +111,9 @@ void ViewsOf(const SampleTable& table,
   }
 }
 
-ChannelForm MakeForm(const SampleTable& table, size_t num_keyframes, int channel) {
+ChannelForm MakeForm(const SampleTable& table,
+                     size_t num_keyframes,
+                     int channel) {
   ChannelForm form;
   const auto size = static_cast<Eigen::Index>(2 * num_keyframes);
   form.hessian = Eigen::MatrixXd::Zero(size, size);
@@ -128,8 +130,7 @@ ChannelForm MakeForm(const SampleTable& table, size_t num_keyframes, int channel
       form.count[views.keyframe[a]] += 1;
       for (size_t b = 0; b <= a; ++b) {
         const Eigen::RowVector2d vb(views.intensity[b], 1);
-        form.hessian.block<2, 2>(row, 2 * views.keyframe[b]) -=
-            share * va * vb;
+        form.hessian.block<2, 2>(row, 2 * views.keyframe[b]) -= share * va * vb;
       }
       form.hessian.block<2, 2>(row, row) += va * va.transpose();
     }
@@ -139,7 +140,8 @@ ChannelForm MakeForm(const SampleTable& table, size_t num_keyframes, int channel
 
 using ChannelExposures = std::vector<std::array<double, 2>>;
 
-ChannelExposures Solve(const ChannelForm& form, const ExposureOptions& options) {
+ChannelExposures Solve(const ChannelForm& form,
+                       const ExposureOptions& options) {
   ChannelExposures exposures(form.count.size(), {1, 0});
   double total = 0;
   for (const double n : form.count) total += n;
@@ -193,7 +195,8 @@ void DropImpossible(double max_gain, std::vector<Exposure>* exposures) {
 }
 
 // Sum of (a I + b - C)^2 over the samples of a channel.
-double SumOfSquares(const ChannelForm& form, const ChannelExposures& exposures) {
+double SumOfSquares(const ChannelForm& form,
+                    const ChannelExposures& exposures) {
   Eigen::VectorXd x(form.hessian.rows());
   for (size_t k = 0; k < exposures.size(); ++k) {
     x.segment<2>(static_cast<Eigen::Index>(2 * k)) << exposures[k][0],

@@ -1,10 +1,10 @@
 // Copyright (c) 2026 The facet authors
 // SPDX-License-Identifier: MIT
 //
-// Exposures of the keyframes (texture/exposure.h) from what they see of the same
-// texels, before anything else moves: three linear least-squares problems, one
-// a channel, with the colours eliminated (costs/exposure_cost.h). Brightness is
-// a matter of large areas, so initial poses are good enough.
+// Exposures of the keyframes (texture/exposure.h) from what they see of the
+// same texels, before anything else moves: three linear least-squares problems,
+// one a channel, with the colours eliminated (costs/exposure_cost.h).
+// Brightness is a matter of large areas, so initial poses are good enough.
 #pragma once
 
 #include <vector>
@@ -40,9 +40,10 @@ struct ExposureCalibration {
   double min_grey = 0, max_grey = 0;
 };
 
-// Colours are looked up at the plane points q. Of a texel seen by fewer than two
-// keyframes nothing is learnt. Warns of keyframes with an impossible gain, and
-// leaves all as taken, with a warning, if there is no solution. Same result at any number of threads.
+// Colours are looked up at the plane points q. Of a texel seen by fewer than
+// two keyframes nothing is learnt. Warns of keyframes with an impossible gain,
+// and leaves all as taken, with a warning, if there is no solution. Same result
+// at any number of threads.
 ExposureCalibration CalibrateExposures(const TexelSet& texels,
                                        const Observations& observations,
                                        const std::vector<Plane>& planes,

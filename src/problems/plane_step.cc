@@ -21,9 +21,11 @@ std::vector<PlaneSegment> SegmentsOfPlane(const TextureProblem& problem,
                                           int plane) {
   std::vector<PlaneSegment> segments;
   for (size_t t = problem.plane_tile_begin[plane];
-       t < problem.plane_tile_begin[plane + 1]; ++t) {
+       t < problem.plane_tile_begin[plane + 1];
+       ++t) {
     for (size_t s = problem.tiles[t].segment_begin;
-         s < problem.tiles[t].segment_end; ++s) {
+         s < problem.tiles[t].segment_end;
+         ++s) {
       const TileSegment& segment = problem.segments[s];
       segments.push_back({segment.keyframe,
                           problem.observations.texel.data() + segment.begin,
@@ -46,11 +48,12 @@ void LimitPlaneStep(const SolverConfig& config,
   }
   phi /= length;
   if (phi.head<3>().dot(before.head<3>()) < 0) phi = -phi;
-  const double tilt = std::acos(
-      std::clamp(phi.head<3>().dot(before.head<3>()), -1.0, 1.0));
+  const double tilt =
+      std::acos(std::clamp(phi.head<3>().dot(before.head<3>()), -1.0, 1.0));
   const double shift = std::abs(phi[3] - before[3]);
-  const double scale = std::max(
-      {1.0, tilt / config.max_plane_tilt_rad, shift / config.max_plane_offset_m});
+  const double scale = std::max({1.0,
+                                 tilt / config.max_plane_tilt_rad,
+                                 shift / config.max_plane_offset_m});
   if (scale > 1) {
     phi = before + (phi - before) / scale;
     phi.head<3>().normalize();
@@ -135,13 +138,14 @@ void SolvePlanes(const TextureProblem& problem,
     const double cost_before = Cost(&ceres_problem);
     ceres::Solver::Summary solved;
     ceres::Solve(PlaneSolverOptions(config, memory->plane_radius[j]),
-                 &ceres_problem, &solved);
+                 &ceres_problem,
+                 &solved);
     iterations[j] = static_cast<int>(solved.iterations.size());
     cost_start[j] = 2 * solved.initial_cost;
     cost_end[j] = 2 * solved.final_cost;
     if (!solved.iterations.empty()) {
-      memory->plane_radius[j] = std::clamp(
-          solved.iterations.back().trust_region_radius, 1e-2, 1e8);
+      memory->plane_radius[j] =
+          std::clamp(solved.iterations.back().trust_region_radius, 1e-2, 1e8);
     }
     LimitPlaneStep(config, before, plane);
     if (!(Cost(&ceres_problem) <= cost_before)) {

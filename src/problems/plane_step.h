@@ -1,8 +1,8 @@
 // Copyright (c) 2026 The facet authors
 // SPDX-License-Identifier: MIT
 //
-// The plane step of the alternation: E_c + lambda1 E_p over each plane, the rest
-// fixed; planes do not interact.
+// The plane step of the alternation: E_c + lambda1 E_p over each plane, the
+// rest fixed; planes do not interact.
 #pragma once
 
 #include "problems/solve_blocks.h"

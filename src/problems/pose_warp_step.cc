@@ -51,14 +51,18 @@ class FrameProblem {
         blocks_(blocks),
         pose_(state->poses.data() + kPoseSize * keyframe),
         warp_(state->warps.data() +
-              2 * static_cast<size_t>(problem.lattice.NumVertices()) * keyframe) {
+              2 * static_cast<size_t>(problem.lattice.NumVertices()) *
+                  keyframe) {
     // A pose-only solve still sees a warp that is there already.
-    with_warp_ = (blocks & kWarps) != 0 ||
-                 channels[0].frames[keyframe].warp != nullptr;
-    bins_ = BinByCell(problem, channels[0].points,
-                      state->CamFromWorld(keyframe), keyframe, !with_warp_);
-    ceres_.AddParameterBlock(pose_, kPoseSize,
-                             CreatePoseManifold(problem.formulation.manifold));
+    with_warp_ =
+        (blocks & kWarps) != 0 || channels[0].frames[keyframe].warp != nullptr;
+    bins_ = BinByCell(problem,
+                      channels[0].points,
+                      state->CamFromWorld(keyframe),
+                      keyframe,
+                      !with_warp_);
+    ceres_.AddParameterBlock(
+        pose_, kPoseSize, CreatePoseManifold(problem.formulation.manifold));
     AddCells(channels, keyframe, *state, weights);
     if (with_warp_) AddWarpTerm(weights);
     if (blocks & kPoses) {
@@ -73,8 +77,8 @@ class FrameProblem {
 
   double Cost() {
     double cost = 0;
-    ceres_.Evaluate(ceres::Problem::EvaluateOptions(), &cost, nullptr, nullptr,
-                    nullptr);
+    ceres_.Evaluate(
+        ceres::Problem::EvaluateOptions(), &cost, nullptr, nullptr, nullptr);
     return cost;
   }
 
@@ -98,20 +102,36 @@ class FrameProblem {
       std::vector<double*> parameters = {pose_};
       if (with_warp_) {
         parameters.insert(parameters.end(),
-                          {Vertex(a, b), Vertex(a + 1, b), Vertex(a, b + 1),
+                          {Vertex(a, b),
+                           Vertex(a + 1, b),
+                           Vertex(a, b + 1),
                            Vertex(a + 1, b + 1)});
       }
       if (texture_.formulation.evaluation == Evaluation::kReference) {
-        AddReferenceCell(texture_, state, keyframe, a, b, ids, n, weight,
-                         parameters, &ceres_);
+        AddReferenceCell(texture_,
+                         state,
+                         keyframe,
+                         a,
+                         b,
+                         ids,
+                         n,
+                         weight,
+                         parameters,
+                         &ceres_);
         continue;
       }
       for (const PhotoChannel& channel : channels) {
-        ceres_.AddResidualBlock(
-            new FrameCellCost(channel.frames[keyframe], texture_.origin, a, b,
-                              channel.points.data(), ids, n, with_warp_,
-                              weight),
-            nullptr, parameters);
+        ceres_.AddResidualBlock(new FrameCellCost(channel.frames[keyframe],
+                                                  texture_.origin,
+                                                  a,
+                                                  b,
+                                                  channel.points.data(),
+                                                  ids,
+                                                  n,
+                                                  with_warp_,
+                                                  weight),
+                                nullptr,
+                                parameters);
       }
     }
   }
@@ -120,8 +140,8 @@ class FrameProblem {
     for (int l = 0; l < texture_.lattice.NumVertices(); ++l) {
       ceres_.AddResidualBlock(
           WarpOffsetCost::Create(),
-          new ceres::ScaledLoss(nullptr, weights.lambda2,
-                                ceres::TAKE_OWNERSHIP),
+          new ceres::ScaledLoss(
+              nullptr, weights.lambda2, ceres::TAKE_OWNERSHIP),
           warp_ + 2 * l);
       if (!(blocks_ & kWarps)) ceres_.SetParameterBlockConstant(warp_ + 2 * l);
     }
@@ -147,11 +167,12 @@ void LimitFrameStep(const SolverConfig& config,
   const Pose change = PoseFromBlock(pose) * before.Inverse();
   const Eigen::Vector3d center_shift =
       PoseFromBlock(pose).CenterInSource() - before.CenterInSource();
-  double scale = std::max({1.0, RotationAngle(change) / config.max_rotation_rad,
+  double scale = std::max({1.0,
+                           RotationAngle(change) / config.max_rotation_rad,
                            center_shift.norm() / config.max_translation_m});
   for (size_t k = 0; k < warp_before.size(); ++k) {
-    scale =
-        std::max(scale, std::abs(warp[k] - warp_before[k]) / config.max_warp_px);
+    scale = std::max(scale,
+                     std::abs(warp[k] - warp_before[k]) / config.max_warp_px);
   }
   if (!(scale > 1)) return;
   PoseToBlock(ExpSe3(xi / scale) * before, pose);
@@ -201,25 +222,27 @@ FrameResult SolveFrame(const TextureProblem& problem,
                        int keyframe,
                        double* radius,
                        ReconState* state) {
-  const size_t num_warp = 2 * static_cast<size_t>(problem.lattice.NumVertices());
+  const size_t num_warp =
+      2 * static_cast<size_t>(problem.lattice.NumVertices());
   double* pose = state->poses.data() + kPoseSize * keyframe;
   double* warp = state->warps.data() + num_warp * keyframe;
   const std::vector<double> pose_before(pose, pose + kPoseSize);
   const std::vector<double> warp_before(warp, warp + num_warp);
 
-  FrameProblem frame_problem(problem, weights, terms, blocks, channels,
-                             keyframe, state);
+  FrameProblem frame_problem(
+      problem, weights, terms, blocks, channels, keyframe, state);
   const double cost_before = frame_problem.Cost();
   ceres::Solver::Summary solved;
   ceres::Solve(FrameSolverOptions(config, frame_problem.with_warp(), *radius),
-               frame_problem.ceres_problem(), &solved);
+               frame_problem.ceres_problem(),
+               &solved);
   FrameResult result;
   result.iterations = static_cast<int>(solved.iterations.size());
   result.cost_before = 2 * solved.initial_cost;
   result.cost_after = 2 * solved.final_cost;
   if (!solved.iterations.empty()) {
-    *radius = std::clamp(solved.iterations.back().trust_region_radius, 1e-2,
-                         1e8);
+    *radius =
+        std::clamp(solved.iterations.back().trust_region_radius, 1e-2, 1e8);
   }
   LimitFrameStep(config, pose_before, warp_before, pose, warp);
   if (!(frame_problem.Cost() <= cost_before) ||
@@ -255,8 +278,14 @@ void SolvePosesAndWarps(const TextureProblem& problem,
     const unsigned free =
         config.fix_first_pose && k == 0 ? blocks & ~unsigned{kPoses} : blocks;
     if (free == 0) return;
-    results[k] = SolveFrame(problem, weights, terms, free, config, channels,
-                            static_cast<int>(k), &memory->frame_radius[k],
+    results[k] = SolveFrame(problem,
+                            weights,
+                            terms,
+                            free,
+                            config,
+                            channels,
+                            static_cast<int>(k),
+                            &memory->frame_radius[k],
                             state);
   });
   for (const FrameResult& result : results) {

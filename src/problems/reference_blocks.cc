@@ -79,11 +79,11 @@ void AddReferencePlane(const TextureProblem& problem,
                                     bottom[2],
                                     bottom[3]};
         ceres_problem->AddResidualBlock(
-            PhotometricPlaneCost::Create(
-                PhotometricPlaneCost(MakeReferenceCost(problem, image, c.a, c.b, id),
-                                     pose,
-                                     state.colors[channel * num_texels + id],
-                                     vertices)),
+            PhotometricPlaneCost::Create(PhotometricPlaneCost(
+                MakeReferenceCost(problem, image, c.a, c.b, id),
+                pose,
+                state.colors[channel * num_texels + id],
+                vertices)),
             CreateReferenceLoss(problem.formulation, weight),
             plane);
       }

@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: MIT
 //
 // Terms of the objective over poses and planes: the pose prior, the depth term,
-// and those of your own (docs/add-a-residual.md). A term is a list of Ceres cost
-// functions, each over one pose, one plane, or one of each; the phases Phi, T
-// and T+F, the joint solves and the energy evaluator all take it from here.
+// and those of your own (docs/add-a-residual.md). A term is a list of Ceres
+// cost functions, each over one pose, one plane, or one of each; the phases
+// Phi, T and T+F, the joint solves and the energy evaluator all take it from
+// here.
 #pragma once
 
 #include <ceres/cost_function.h>
@@ -21,8 +22,8 @@ struct ReconState;
 struct TextureProblem;
 
 // Adds |r|^2 to the objective. Parameter blocks: the pose cam_from_world of
-// `keyframe` (7, costs/se3_manifold.h), then `plane` (4: n, d about its anchor);
-// -1 = has no such parameter. Evaluated on many threads at once.
+// `keyframe` (7, costs/se3_manifold.h), then `plane` (4: n, d about its
+// anchor); -1 = has no such parameter. Evaluated on many threads at once.
 struct TermBlock {
   std::shared_ptr<const ceres::CostFunction> cost;
   int keyframe = -1, plane = -1;

@@ -69,12 +69,13 @@ void BuildSegments(TextureProblem* problem) {
       const uint32_t* first = obs.texel.data() + i;
       const uint32_t* last = obs.texel.data() + obs.begin[k + 1];
       const size_t n = static_cast<size_t>(
-          std::lower_bound(first, last,
-                           static_cast<uint32_t>(
-                               problem->tiles[tile].texel_end)) -
+          std::lower_bound(
+              first,
+              last,
+              static_cast<uint32_t>(problem->tiles[tile].texel_end)) -
           first);
-      by_frame[k].push_back({static_cast<uint32_t>(tile),
-                             {static_cast<int>(k), i, i + n}});
+      by_frame[k].push_back(
+          {static_cast<uint32_t>(tile), {static_cast<int>(k), i, i + n}});
       i += n;
     }
   });
@@ -115,19 +116,20 @@ void BuildMoments(TextureProblem* problem) {
   problem->plane_texels.assign(problem->NumPlanes(), 0);
   ParallelFor(0, problem->moments.size(), [&](size_t j) {
     for (size_t t = problem->plane_tile_begin[j];
-         t < problem->plane_tile_begin[j + 1]; ++t) {
+         t < problem->plane_tile_begin[j + 1];
+         ++t) {
       const TexelTile& tile = problem->tiles[t];
       for (size_t i = tile.texel_begin; i < tile.texel_end; ++i) {
-        AddToMoment(texels.position[i], problem->anchors[j],
-                    &problem->moments[j]);
+        AddToMoment(
+            texels.position[i], problem->anchors[j], &problem->moments[j]);
         problem->plane_texels[j] += problem->views[i] > 0 ? 1 : 0;
       }
     }
   });
   for (size_t i = 0; i < texels.margin_position.size(); ++i) {
     const int j = texels.margin_plane[i];
-    AddToMoment(texels.margin_position[i], problem->anchors[j],
-                &problem->moments[j]);
+    AddToMoment(
+        texels.margin_position[i], problem->anchors[j], &problem->moments[j]);
   }
   for (int j = 0; j < problem->NumPlanes(); ++j) {
     if (problem->plane_texels[j] == 0) problem->moments[j].setZero();
@@ -144,11 +146,10 @@ void BuildGradients(TextureProblem* problem) {
   problem->gradients_x.resize(num_images);
   problem->gradients_y.resize(num_images);
   ParallelFor(0, num_images, [&](size_t i) {
-    ScharrGradients(
-        problem->Image(static_cast<int>(i) / num_keyframes,
-                       static_cast<int>(i) % num_keyframes),
-        &problem->gradients_x[i],
-        &problem->gradients_y[i]);
+    ScharrGradients(problem->Image(static_cast<int>(i) / num_keyframes,
+                                   static_cast<int>(i) % num_keyframes),
+                    &problem->gradients_x[i],
+                    &problem->gradients_y[i]);
   });
 }
 
@@ -178,8 +179,7 @@ std::vector<TexelTile> SortTexelsIntoTiles(
       const int j = texels->plane[i];
       const Eigen::Vector3d e1 = planes[j].normal.unitOrthogonal();
       const Eigen::Vector3d e2 = planes[j].normal.cross(e1);
-      const Eigen::Vector3d p =
-          texels->position[i].cast<double>() - anchors[j];
+      const Eigen::Vector3d p = texels->position[i].cast<double>() - anchors[j];
       cell[i] = {static_cast<int>(std::floor(e1.dot(p) / tile_m)),
                  static_cast<int>(std::floor(e2.dot(p) / tile_m))};
     }
@@ -245,7 +245,8 @@ std::vector<PhotoFrame> MakePhotoFrames(const TextureProblem& problem,
                                         std::vector<float>* warps,
                                         int channel) {
   const Formulation& formulation = problem.formulation;
-  const size_t num_warp = 2 * static_cast<size_t>(problem.lattice.NumVertices());
+  const size_t num_warp =
+      2 * static_cast<size_t>(problem.lattice.NumVertices());
   warps->assign(state.warps.begin(), state.warps.end());
   std::vector<PhotoFrame> frames(problem.NumKeyframes());
   for (int k = 0; k < problem.NumKeyframes(); ++k) {
@@ -298,8 +299,10 @@ std::vector<PhotoTexel> PlanePoints(const TextureProblem& problem,
                                    problem.texels.position[i].cast<double>(),
                                    problem.anchors[tile.plane]) -
           problem.origin;
-      points[i] = {static_cast<float>(q.x()), static_cast<float>(q.y()),
-                   static_cast<float>(q.z()), colors[i]};
+      points[i] = {static_cast<float>(q.x()),
+                   static_cast<float>(q.y()),
+                   static_cast<float>(q.z()),
+                   colors[i]};
     }
   });
   return points;
@@ -314,8 +317,10 @@ std::vector<PhotoTexel> MeshPoints(const TextureProblem& problem,
     for (size_t i = a; i < b; ++i) {
       const Eigen::Vector3d p =
           problem.texels.position[i].cast<double>() - problem.origin;
-      points[i] = {static_cast<float>(p.x()), static_cast<float>(p.y()),
-                   static_cast<float>(p.z()), colors[i]};
+      points[i] = {static_cast<float>(p.x()),
+                   static_cast<float>(p.y()),
+                   static_cast<float>(p.z()),
+                   colors[i]};
     }
   });
   return points;
@@ -327,8 +332,8 @@ std::vector<PhotoChannel> MakePhotoChannels(const TextureProblem& problem,
   std::vector<PhotoChannel> channels(problem.NumChannels());
   for (size_t c = 0; c < channels.size(); ++c) {
     const int channel = static_cast<int>(c);
-    channels[c].frames = MakePhotoFrames(
-        problem, state, false, &channels[c].warps, channel);
+    channels[c].frames =
+        MakePhotoFrames(problem, state, false, &channels[c].warps, channel);
     channels[c].points = points == PointsAt::kPlane
                              ? PlanePoints(problem, state, channel)
                              : MeshPoints(problem, state, channel);

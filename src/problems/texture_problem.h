@@ -1,8 +1,8 @@
 // Copyright (c) 2026 The facet authors
 // SPDX-License-Identifier: MIT
 //
-// What the photometric optimisation works on: the constant part (TextureProblem)
-// and the unknowns (ReconState).
+// What the photometric optimisation works on: the constant part
+// (TextureProblem) and the unknowns (ReconState).
 #pragma once
 
 #include <Eigen/Core>
@@ -59,21 +59,21 @@ struct TileSegment {
 // Everything that stays constant while poses, planes, warps and colours move.
 struct TextureProblem {
   Formulation formulation;
-  Pinhole camera;        // of the colour images
+  Pinhole camera;  // of the colour images
   WarpLattice lattice;
-  std::vector<ImageView<float>> images;      // luma or red, pre-smoothed: E_c
+  std::vector<ImageView<float>> images;  // luma or red, pre-smoothed: E_c
   // Channels::kRgb: green, then blue images.
   std::vector<std::vector<ImageView<float>>> more_images;
   std::vector<ImageView<float>> raw_images;  // luma, unsmoothed: rms_grey
   TexelSet texels;
   Observations observations;
   std::vector<TexelTile> tiles;
-  std::vector<TileSegment> segments;     // by tile, ascending keyframe
-  std::vector<size_t> plane_tile_begin;  // planes + 1: tiles of each plane
-  std::vector<Eigen::Vector3d> anchors;  // of the planes, world [m]
-  std::vector<Eigen::Matrix4d> moments;  // of costs/plane_moment.h, a plane
-  std::vector<size_t> plane_texels;      // observed texels of each plane
-  std::vector<uint16_t> views;           // keyframes that see each texel
+  std::vector<TileSegment> segments;         // by tile, ascending keyframe
+  std::vector<size_t> plane_tile_begin;      // planes + 1: tiles of each plane
+  std::vector<Eigen::Vector3d> anchors;      // of the planes, world [m]
+  std::vector<Eigen::Matrix4d> moments;      // of costs/plane_moment.h, a plane
+  std::vector<size_t> plane_texels;          // observed texels of each plane
+  std::vector<uint16_t> views;               // keyframes that see each texel
   std::vector<DepthMoment> depth_moments;    // may be empty: no E_d
   std::vector<Pose> initial_cam_from_world;  // centre of the pose prior
   std::vector<Term> terms;                   // beside prior and E_d

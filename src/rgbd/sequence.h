@@ -89,8 +89,8 @@ class RgbdSequence {
 std::unique_ptr<RgbdSequence> OpenSequence(const std::string& path,
                                            const SequenceOptions& options);
 
-// Luma 0.299 R + 0.587 G + 0.114 B, CV_32F, of an RGB 8-bit image, in [0, 1]; of
-// the colours gain * rgb + offset (offset in 0-1) if these are given.
+// Luma 0.299 R + 0.587 G + 0.114 B, CV_32F, of an RGB 8-bit image, in [0, 1];
+// of the colours gain * rgb + offset (offset in 0-1) if these are given.
 cv::Mat LumaFromRgb(const cv::Mat& rgb,
                     const Eigen::Array3f& gain = Eigen::Array3f::Ones(),
                     const Eigen::Array3f& offset = Eigen::Array3f::Zero());

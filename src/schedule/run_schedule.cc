@@ -109,7 +109,8 @@ Trace RunSchedule(const TextureProblem& problem,
 
 std::string TraceCsv(const Trace& trace) {
   std::string csv =
-      "level,round,phase,E_c,E_p_m2,E_s_px2,E_tex,E_prior,E_depth,E_terms,rms_grey_255,"
+      "level,round,phase,E_c,E_p_m2,E_s_px2,E_tex,E_prior,E_depth,E_terms,rms_"
+      "grey_255,"
       "observations,clamped,behind,lost,accepted,problems,iterations,reverted,"
       "wall_s,cpu_s\n";
   csv += CsvLine(0, 0, "initial", trace.initial, nullptr, 0, 0);

@@ -30,8 +30,9 @@ double TexelsOf(const TermInput& input, int plane) {
 // all planes if that is zero.
 Eigen::Vector3d LargestNormal(const TermInput& input,
                               const Eigen::Vector3d& across) {
-  Eigen::Vector3d best = across.isZero() ? Eigen::Vector3d(Eigen::Vector3d::UnitZ())
-                                         : across.unitOrthogonal();
+  Eigen::Vector3d best = across.isZero()
+                             ? Eigen::Vector3d(Eigen::Vector3d::UnitZ())
+                             : across.unitOrthogonal();
   double most = 0;
   for (int j = 0; j < input.problem.NumPlanes(); ++j) {
     const Eigen::Vector3d n = NormalOf(input, j);

@@ -1,8 +1,9 @@
 // Copyright (c) 2026 The facet authors
 // SPDX-License-Identifier: MIT
 //
-// Planes that start close to one of three orthogonal directions are drawn to it:
-// most rooms are built that way (a Manhattan world; Coughlan and Yuille 1999).
+// Planes that start close to one of three orthogonal directions are drawn to
+// it: most rooms are built that way (a Manhattan world; Coughlan and Yuille
+// 1999).
 #pragma once
 
 #include <Eigen/Core>

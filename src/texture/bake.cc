@@ -161,8 +161,8 @@ class Baker {
         const Vector3f &p = texels_.p[i], &q = texels_.q[i];
         size_t word = (i - tile.begin) / 64;
         bool may_see = false;
-        if (view.Test(p, q, normal,
-                      options_.mild_fallback ? &may_see : nullptr) !=
+        if (view.Test(
+                p, q, normal, options_.mild_fallback ? &may_see : nullptr) !=
             Sight::kVisible) {
           if (!may_see) continue;
           word += num_words;
@@ -240,10 +240,9 @@ class Baker {
       }
       if (chart.steep) normal = Normal(chart, i);
       const float cosine = normal.dot((center - texels_.q[i]).normalized());
-      sample.rgb = exposure.Corrected(
-          options_.sampler == BakeSampler::kBilinear
-              ? BilinearRgb(rgb, u.x(), u.y())
-              : BicubicRgb(rgb, u.x(), u.y()));
+      sample.rgb = exposure.Corrected(options_.sampler == BakeSampler::kBilinear
+                                          ? BilinearRgb(rgb, u.x(), u.y())
+                                          : BicubicRgb(rgb, u.x(), u.y()));
       sample.weight =
           Weight(std::abs(cosine), y.z(), sharpness_[view.keyframe], u);
     }

@@ -11,9 +11,9 @@
 // ramp from 0 at the image border to 1. Plain averages blur (misalignment,
 // motion, distance); e > 1 leans towards the best view, e -> infinity selects
 // it. A robust pass first drops samples whose luma is far from the weighted
-// median: highlights, people, misregistered edges. The defaults are the plain mean
-// of the authors' code but for the ramp: on real scans every weight tried made
-// held-out views match worse (docs/design.md).
+// median: highlights, people, misregistered edges. The defaults are the plain
+// mean of the authors' code but for the ramp: on real scans every weight tried
+// made held-out views match worse (docs/design.md).
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -41,7 +41,8 @@ struct BakeOptions {
   double sharpness_power = 0;     // c >= 0; 0 = do not measure blur
   double best_view_power = 1;     // e > 0; all powers 0 and e 1: plain mean
   double border_feather_px = 40;  // width of the ramp f; 0 = none
-  // Drop samples with a larger |luma - median|, intensities 0 to 1; 0 = keep all.
+  // Drop samples with a larger |luma - median|, intensities 0 to 1; 0 = keep
+  // all.
   double robust_luma = 0;
   // Brightness of the texture, if the keyframes have exposures: 0 = the common
   // one everywhere, 1 = of every texel the mean of those under which it was
@@ -76,7 +77,8 @@ struct BakeReport {
 //   color_cam_from_world, warps  by keyframe: pose; 2 * lattice.NumVertices()
 //              doubles [px]. `warps` may be empty.
 //   report     may be null
-//   only_faces by face, empty = all: texels of tiles without such a face count as
+//   only_faces by face, empty = all: texels of tiles without such a face count
+//   as
 //              unseen, which saves their time
 // Same result at any number of threads.
 std::vector<cv::Mat> BakeTexture(const TriMesh& mesh,

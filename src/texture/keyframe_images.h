@@ -19,8 +19,8 @@ struct KeyframeImages {
   std::vector<cv::Mat> rgb;     // CV_8UC3, RGB order
   std::vector<cv::Mat> luma;    // CV_32F in [0, 1], unsmoothed
   std::vector<cv::Mat> smooth;  // luma after a Gaussian of `sigma` px
-  // `luma` and `smooth` have these applied, `rgb` is as taken. May be empty: all
-  // as taken.
+  // `luma` and `smooth` have these applied, `rgb` is as taken. May be empty:
+  // all as taken.
   std::vector<Exposure> exposures;
 
   size_t size() const { return rgb.size(); }

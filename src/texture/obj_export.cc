@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "texture/obj_export.h"
 
-#include <filesystem>
-
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 
 #include "texture/seam_vertices.h"
 #include "util/atomic_file.h"

@@ -52,8 +52,7 @@ struct VisibilityOptions {
 struct VisibilityCounts {
   size_t candidates = 0, behind_or_far = 0, outside_image = 0, grazing = 0,
          depth_missing = 0, depth_edge = 0, depth_disagrees = 0, mesh_edge = 0,
-         occluded = 0,
-         too_few_views = 0, used = 0;
+         occluded = 0, too_few_views = 0, used = 0;
 };
 
 // Which keyframes see which texels. A texel is judged by its plane point q

@@ -20,8 +20,8 @@ struct TexturedMesh {
   // down, the centre of the texel in column j and row i is (j + 0.5, i + 0.5).
   // Empty: the mesh is vertex-coloured.
   std::vector<std::array<Eigen::Vector2f, 3>> face_uv;
-  std::vector<int> face_page;   // page index of every face
-  std::vector<cv::Mat> pages;   // CV_8UC3, RGB order
+  std::vector<int> face_page;  // page index of every face
+  std::vector<cv::Mat> pages;  // CV_8UC3, RGB order
 };
 
 // RGB (0-255) at barycentrics (1-u-v, u, v) of a face: bilinear texture lookup,

@@ -54,9 +54,9 @@ class FrameView {
   // normal: outward, unit.
   //
   // `may_see`, if not null, gets a milder verdict, for points that no keyframe
-  // sees by the tests: inside the range and the image, not occluded by the mesh,
-  // seen at less than 85 degrees, and no surface measured more than 10 cm before
-  // it. Missing depth and depth edges do not matter. True for kVisible.
+  // sees by the tests: inside the range and the image, not occluded by the
+  // mesh, seen at less than 85 degrees, and no surface measured more than 10 cm
+  // before it. Missing depth and depth edges do not matter. True for kVisible.
   Sight Test(const Eigen::Vector3f& p,
              const Eigen::Vector3f& q,
              const Eigen::Vector3f& normal,

@@ -54,7 +54,8 @@ class ArchiveReader {
     std::vector<T> values(entry.count);
     if (entry.count > 0) {
       std::memcpy(static_cast<void*>(values.data()),
-                  bytes_.data() + entry.offset, entry.count * sizeof(T));
+                  bytes_.data() + entry.offset,
+                  entry.count * sizeof(T));
     }
     return values;
   }

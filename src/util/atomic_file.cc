@@ -26,9 +26,9 @@ void WriteFileAtomically(
     }
   }
   const fs::path temporary =
-      target.parent_path() / ("." + target.stem().string() + ".partial" +
-                              std::to_string(getpid()) +
-                              target.extension().string());
+      target.parent_path() /
+      ("." + target.stem().string() + ".partial" + std::to_string(getpid()) +
+       target.extension().string());
   try {
     write(temporary.string());
     fs::rename(temporary, target);

@@ -14,9 +14,9 @@ namespace facet {
 // Exit codes of every facet program, documented in docs/cli.md.
 enum ExitCode {
   kExitOk = 0,
-  kExitInternal = 1,  // a bug of ours, or a flag that gflags refuses
-  kExitOptions = 2,   // options that make no sense
-  kExitInput = 3,     // bad or missing input
+  kExitInternal = 1,   // a bug of ours, or a flag that gflags refuses
+  kExitOptions = 2,    // options that make no sense
+  kExitInput = 3,      // bad or missing input
   kExitUnsolvable = 4  // the input is readable but nothing can be made of it
 };
 

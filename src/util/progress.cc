@@ -26,8 +26,12 @@ void Progress::Add(size_t steps) {
   if (percent == shown_percent_) return;
   shown_percent_ = percent;
   const int bars = percent * 30 / 100;
-  std::fprintf(stderr, "\r%-24s [%-30.*s] %3d %%", label_.c_str(), bars,
-               "==============================", percent);
+  std::fprintf(stderr,
+               "\r%-24s [%-30.*s] %3d %%",
+               label_.c_str(),
+               bars,
+               "==============================",
+               percent);
 }
 
 }  // namespace facet

@@ -26,9 +26,7 @@ class Random {
   uint64_t NextBits() { return SplitMix64(state_++); }
 
   // Uniform in [0, 1).
-  double Uniform() {
-    return static_cast<double>(NextBits() >> 11) * 0x1.0p-53;
-  }
+  double Uniform() { return static_cast<double>(NextBits() >> 11) * 0x1.0p-53; }
 
   // Uniform in [low, high).
   double Uniform(double low, double high) {

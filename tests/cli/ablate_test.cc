@@ -117,8 +117,8 @@ TEST(CliAblate, WritesItsOutputsAndSkipsWhatIsDone) {
 }
 
 // What docs/add-a-residual.md promises: a term of terms/term_kinds.cc has a row
-// without a line of code in facet-ablate. Breaks if the term does nothing, or if
-// its energies are no longer those of the paper's terms.
+// without a line of code in facet-ablate. Breaks if the term does nothing, or
+// if its energies are no longer those of the paper's terms.
 TEST(CliAblate, HasARowForATerm) {
   const TempDir dir;
   const std::string folder = dir / "abl";

@@ -142,7 +142,8 @@ TEST(PlaneManifolds, InvariantsHoldAndNormalsStayUnit) {
     for (int i = 0; i < 20; ++i) {
       const Vector x = RandomPlane(&random);
       Vector y = RandomPlane(&random);
-      // Small enough that the unit 4-vector does not pass the plane at infinity.
+      // Small enough that the unit 4-vector does not pass the plane at
+      // infinity.
       const Vector delta =
           RandomVectorOf(manifold->TangentSize(), 0.03, &random);
       EXPECT_THAT_MANIFOLD_INVARIANTS_HOLD((*manifold), x, delta, y, 1e-7);

@@ -109,7 +109,8 @@ TEST_F(ImageSamplerTest, BicubicGradientIsTheCentralDifference) {
   Random random(3);
   const double h = 1e-5;
   for (int i = 0; i < 300; ++i) {
-    const double u = random.Uniform(0.01, 11.99), v = random.Uniform(0.01, 7.99);
+    const double u = random.Uniform(0.01, 11.99),
+                 v = random.Uniform(0.01, 7.99);
     const Sample s = SampleBicubic(image_, u, v);
     const auto value = [&](double x, double y) {
       return SampleBicubic(image_, x, y).value;

@@ -90,33 +90,23 @@ TEST(StageSettings, EveryOptionBelongsToOneStage) {
       {Stage::kPhotometric,
        [](auto* o) { o->photometric.solver.max_joint_iterations = 77; }},
       {Stage::kPhotometric,
-       [](auto* o) {
-         o->photometric.formulation.plane = PlaneKind::kRaw4;
-       }},
+       [](auto* o) { o->photometric.formulation.plane = PlaneKind::kRaw4; }},
       {Stage::kPhotometric,
-       [](auto* o) {
-         o->photometric.formulation.manifold = PoseKind::kRight;
-       }},
+       [](auto* o) { o->photometric.formulation.manifold = PoseKind::kRight; }},
       {Stage::kPhotometric,
        [](auto* o) {
          o->photometric.formulation.sampling = Sampling::kScharr;
        }},
       {Stage::kPhotometric,
-       [](auto* o) {
-         o->photometric.formulation.loss = LossKind::kTukey;
-       }},
+       [](auto* o) { o->photometric.formulation.loss = LossKind::kTukey; }},
       {Stage::kPhotometric,
-       [](auto* o) {
-         o->photometric.formulation.loss_scale = 0.7;
-       }},
+       [](auto* o) { o->photometric.formulation.loss_scale = 0.7; }},
       {Stage::kPhotometric,
        [](auto* o) {
          o->photometric.formulation.out_of_image = OutOfImage::kDrop;
        }},
       {Stage::kPhotometric,
-       [](auto* o) {
-         o->photometric.formulation.channels = Channels::kRgb;
-       }},
+       [](auto* o) { o->photometric.formulation.channels = Channels::kRgb; }},
       {Stage::kPhotometric,
        [](auto* o) {
          o->photometric.formulation.evaluation = Evaluation::kReference;

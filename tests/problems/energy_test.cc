@@ -182,7 +182,8 @@ TEST(Energy, InitialLambda1BalancesTheTerms) {
   PerturbPoses(0.005, 0.01, 1, &flat_state);
   const EnergyWeights flat_weights =
       StartFrom(&flat_state, &flat_scene.problem);
-  const size_t texels = flat_scene.problem.texels.size();  // all planes are seen
+  const size_t texels =
+      flat_scene.problem.texels.size();  // all planes are seen
   const double e_c =
       EvaluateEnergy(flat_scene.problem, flat_weights, flat_state).e_c;
   EXPECT_NEAR(flat_weights.lambda1,

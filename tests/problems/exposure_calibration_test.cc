@@ -43,7 +43,8 @@ Views RandomViews(int num_keyframes, int num_texels, Random* random) {
 }
 
 // The quadratic form is the sum over the texels, and its Jacobian that of
-// differences. Breaks if colours are not eliminated or the factor is transposed.
+// differences. Breaks if colours are not eliminated or the factor is
+// transposed.
 TEST(ExposureCost, EqualsTheSumOverTexels) {
   Random random(3);
   const int kKeyframes = 5;
@@ -51,8 +52,7 @@ TEST(ExposureCost, EqualsTheSumOverTexels) {
   const ExposureConsistencyCost cost(views.hessian);
   TangentBlocks blocks;
   for (int k = 0; k < kKeyframes; ++k) {
-    blocks.values.push_back(
-        {1 + 0.2 * random.Normal(), 0.1 * random.Normal()});
+    blocks.values.push_back({1 + 0.2 * random.Normal(), 0.1 * random.Normal()});
     blocks.manifolds.push_back(nullptr);
   }
   double expected = 0;
@@ -208,10 +208,10 @@ TEST(ExposureCalibration, LeavesAgreeingCamerasAlone) {
   wall.observations.texel.resize(seen);
   for (size_t k = 1; k < 3; ++k) {
     wall.observations.begin[k + 1] = (k + 1) * seen;
-    wall.observations.texel.insert(wall.observations.texel.end(),
-                                   wall.observations.texel.begin(),
-                                   wall.observations.texel.begin() +
-                                       static_cast<std::ptrdiff_t>(seen));
+    wall.observations.texel.insert(
+        wall.observations.texel.end(),
+        wall.observations.texel.begin(),
+        wall.observations.texel.begin() + static_cast<std::ptrdiff_t>(seen));
   }
   wall.observations.begin[4] = 3 * seen;  // the last keyframe sees nothing
   const ExposureCalibration found = Calibrate(wall);

@@ -23,7 +23,8 @@ struct TinySceneOptions {
   // The texels lie on a wavy mesh: this is the amplitude of the waves about the
   // plane [m]. 0 = a flat mesh, E_p = 0 at the truth.
   double relief_m = 0.003;
-  // Side of square tiles (SortTexelsIntoTiles); 0 = rows, kTileTexels at a time.
+  // Side of square tiles (SortTexelsIntoTiles); 0 = rows, kTileTexels at a
+  // time.
   int tile_texels = 0;
   double contrast = 0.3;  // of the paint; 0 = grey walls
   double image_margin_px = 6;

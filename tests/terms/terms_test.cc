@@ -1,8 +1,8 @@
 // Copyright (c) 2026 The facet authors
 // SPDX-License-Identifier: MIT
 //
-// What must hold for every term of terms/term_kinds.cc: a new one is tested here
-// without another line.
+// What must hold for every term of terms/term_kinds.cc: a new one is tested
+// here without another line.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -39,8 +39,8 @@ class Terms : public testing::TestWithParam<TermKind> {
   EnergyWeights weights_;
 };
 
-// Breaks by a wrong derivative, a parameter block of the wrong size, or an index
-// out of range.
+// Breaks by a wrong derivative, a parameter block of the wrong size, or an
+// index out of range.
 TEST_P(Terms, JacobiansAreTheCentralDifferences) {
   const LeftSe3Manifold pose_manifold;
   const AnchoredPlaneManifold plane_manifold;
@@ -143,9 +143,16 @@ TEST(ParseTerms, RefusesWhatItDoesNotKnow) {
   ASSERT_EQ(terms.size(), 1u);
   EXPECT_EQ(terms[0].name, "manhattan");
   EXPECT_EQ(terms[0].weight, 0.5);
-  for (const char* text : {"manhattan", "manhattan:", "manhattan:x", "nope:1",
-                           "manhattan:-1", "manhattan:nan", "manhattan:1e999",
-                           "manhattan:1,manhattan:2", "none,manhattan:1", ","}) {
+  for (const char* text : {"manhattan",
+                           "manhattan:",
+                           "manhattan:x",
+                           "nope:1",
+                           "manhattan:-1",
+                           "manhattan:nan",
+                           "manhattan:1e999",
+                           "manhattan:1,manhattan:2",
+                           "none,manhattan:1",
+                           ","}) {
     try {
       ParseTerms(text);
       ADD_FAILURE() << text;

@@ -130,7 +130,8 @@ TEST(Atlas, TexelsBelongToOneFaceAndReproject) {
   const Atlas atlas = BuildAtlas(scene.mesh, scene.partition, options);
   ASSERT_EQ(atlas.charts.size(), 1u);
   const Chart& chart = atlas.charts[0];
-  const TexelSet texels = SampleTexels(scene.mesh, scene.partition, atlas, {1, 0});
+  const TexelSet texels =
+      SampleTexels(scene.mesh, scene.partition, atlas, {1, 0});
   std::set<std::pair<int, int>> centres;
   for (size_t i = 0; i < texels.size(); ++i) {
     const Vector2d px =
@@ -158,7 +159,8 @@ TEST(Atlas, TexelAreaIsProjectedArea) {
     AtlasOptions options;
     options.texel_size_m = h;
     const Atlas atlas = BuildAtlas(scene.mesh, scene.partition, options);
-    const TexelSet texels = SampleTexels(scene.mesh, scene.partition, atlas, {1, 0});
+    const TexelSet texels =
+        SampleTexels(scene.mesh, scene.partition, atlas, {1, 0});
     EXPECT_NEAR(static_cast<double>(texels.size()) * h * h,
                 0.31 * 0.17,
                 0.01 * 0.31 * 0.17);
@@ -217,8 +219,8 @@ TEST(Texels, KeepAwayFromSharpEdgesOnly) {
   AtlasOptions options;
   options.texel_size_m = 0.005;
   const Atlas atlas = BuildAtlas(scene.mesh, scene.partition, options);
-  const TexelSet texels = SampleTexels(
-      scene.mesh, scene.partition, atlas, {1, kMargin});
+  const TexelSet texels =
+      SampleTexels(scene.mesh, scene.partition, atlas, {1, kMargin});
   // What the margin takes from E_c stays in E_p.
   EXPECT_EQ(texels.size() + texels.margin_position.size(),
             SampleTexels(scene.mesh, scene.partition, atlas, {1, 0}).size());
@@ -227,9 +229,10 @@ TEST(Texels, KeepAwayFromSharpEdgesOnly) {
   for (size_t i = 0; i < texels.size(); ++i) {
     const Vector3d p = texels.position[i].cast<double>();
     const double along = p.x() + (2 - p.z());  // 0 ... 1.2 over the three
-    EXPECT_GT(std::min({p.y(), 0.4 - p.y(), along, 1.2 - along,
-                        std::abs(along - 0.8)}),
-              kMargin - 0.0075);
+    EXPECT_GT(
+        std::min(
+            {p.y(), 0.4 - p.y(), along, 1.2 - along, std::abs(along - 0.8)}),
+        kMargin - 0.0075);
     nearest_border = std::min(nearest_border, std::abs(along - 0.4));
   }
   EXPECT_LT(nearest_border, 0.005);

@@ -357,9 +357,8 @@ TEST(Bake, ExposuresAreTakenOutAndPutBack) {
   light.offset.setConstant(0.02f);
   wall.exposures = {dark, light};
   const auto seen = [](const Exposure& undo, const Vector3d& paint) {
-    return Vector3d(
-        (paint.array() - 255.0 * undo.offset.cast<double>()) /
-        undo.gain.cast<double>());
+    return Vector3d((paint.array() - 255.0 * undo.offset.cast<double>()) /
+                    undo.gain.cast<double>());
   };
   for (const Exposure& undo : wall.exposures) {
     wall.sequence.AddRendered(
@@ -378,8 +377,8 @@ TEST(Bake, ExposuresAreTakenOutAndPutBack) {
   const Chart& chart = wall.atlas.charts[0];
   for (int i = 10; i < std::min(chart.width, chart.height) - 10; ++i) {
     for (int k = 0; k < 3; ++k) {
-      const Vector3d paint = Vector3d::Constant(
-          common.at<cv::Vec3b>(chart.y + i, chart.x + i)[k]);
+      const Vector3d paint =
+          Vector3d::Constant(common.at<cv::Vec3b>(chart.y + i, chart.x + i)[k]);
       EXPECT_NEAR(local.at<cv::Vec3b>(chart.y + i, chart.x + i)[k],
                   0.5 * (seen(dark, paint) + seen(light, paint))[0],
                   1.6);

@@ -125,9 +125,10 @@ TEST(Observations, MeshEdgesKeepAwayFromSilhouettes) {
       const Eigen::Vector2d u = camera.Project<double>(
           pose * s.texels.position[o.texel[i]].cast<double>());
       // Signed distance to the outline in the maximum norm.
-      const double outside =
-          std::max({low.x() - u.x(), u.x() - high.x(), low.y() - u.y(),
-                    u.y() - high.y()});
+      const double outside = std::max({low.x() - u.x(),
+                                       u.x() - high.x(),
+                                       low.y() - u.y(),
+                                       u.y() - high.y()});
       EXPECT_GT(std::abs(outside), 2.4) << k;
       near_rim += std::abs(outside) < 8 ? 1 : 0;
     }
@@ -299,9 +300,13 @@ TEST(DepthMoments, VanishOnTheTruePlanesOfTheRightCamera) {
   Scene s;
   DepthMomentOptions options;
   options.step_px = 4;
-  const auto moments = ComputeDepthMoments(
-      s.scene.partition, s.scene.Planes(), RayScene(s.scene.mesh), s.sequence,
-      s.sequence.AllFrames(), s.sequence.AllPoses(), options);
+  const auto moments = ComputeDepthMoments(s.scene.partition,
+                                           s.scene.Planes(),
+                                           RayScene(s.scene.mesh),
+                                           s.sequence,
+                                           s.sequence.AllFrames(),
+                                           s.sequence.AllPoses(),
+                                           options);
   ASSERT_EQ(moments.size(), 6u);  // both planes in all three frames
   for (const DepthMoment& d : moments) {
     const Pose pose = s.sequence.AllPoses()[d.keyframe];
