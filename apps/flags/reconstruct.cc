@@ -100,10 +100,11 @@ DEFINE_double(simplify_border_ratio,
               SimplifyOptions().border_ratio,
               "counts: share of the border edges left");
 DEFINE_int32(simplify_passes, SimplifyOptions().passes, "counts: passes");
-DEFINE_string(plane_init,
-              "dense",
-              "initial planes: dense (clusters of the dense mesh) or "
-              "simplified (refitted to the light mesh)");
+DEFINE_string(
+    plane_init,
+    "dense",
+    "the mesh that planes start from and that E_p holds them to: dense "
+    "or simplified (paper)");
 
 // Texels and visibility
 DEFINE_double(texel_size,

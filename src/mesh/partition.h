@@ -10,6 +10,7 @@
 #include <string>
 
 #include "mesh/cluster_energy.h"
+#include "mesh/covariance.h"
 #include "mesh/planar_partition.h"
 #include "mesh/tri_mesh.h"
 
@@ -54,6 +55,12 @@ struct PartitionReport {
 PlanarPartition PartitionMesh(const TriMesh& mesh,
                               const PartitionOptions& options,
                               PartitionReport* report = nullptr);
+
+// The moments of every cluster (`label` by face), summed in the order of the
+// faces.
+std::vector<SurfaceMoments> ClusterMoments(const TriMesh& mesh,
+                                           const std::vector<int>& label,
+                                           size_t num_clusters);
 
 // Recomputes area, centroid, plane, rms and face count of every cluster from
 // face_cluster and the mesh: exact integrals. The number of clusters is that of

@@ -18,11 +18,6 @@ inline SurfaceMoments FaceMoments(const TriMesh& mesh, size_t face) {
       mesh.vertices[f[0]], mesh.vertices[f[1]], mesh.vertices[f[2]]);
 }
 
-// The moments of every cluster, summed in the order of the faces.
-std::vector<SurfaceMoments> ClusterMoments(const TriMesh& mesh,
-                                           const std::vector<int>& label,
-                                           size_t num_clusters);
-
 // Gauss-Seidel swapping of border faces (method, Sec. 2.5): a face goes to the
 // neighbouring cluster that lowers the sum of energies most. No cluster is
 // emptied. Fills the swap fields of the report.

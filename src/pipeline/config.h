@@ -23,10 +23,11 @@
 
 namespace facet {
 
-// Which planes the photometric step starts from (method, Sec. 3.6).
+// Which mesh says where the planes are: the photometric step starts from planes
+// fitted to its clusters (method, Sec. 3.6), and E_p holds them to it.
 enum class PlaneInit {
-  kDense,       // fitted to the clusters of the dense mesh
-  kSimplified,  // refitted to the simplified mesh (authors' code)
+  kDense,
+  kSimplified,  // the paper and the authors' code: to its texels
 };
 
 struct ReconstructOptions {

@@ -92,6 +92,8 @@ struct StageInputs {
   const std::vector<Pose>& cam_from_world;
   const std::vector<Eigen::Vector3d>& anchors;
   const std::vector<DepthMoment>& depth_moments;
+  const std::vector<SurfaceMoments>& surface;
+  double texel_size_m;
 };
 
 // The problem of a pyramid level, with the images that it reads.
@@ -101,6 +103,7 @@ class Level {
   Level(const StageInputs& inputs,
         const KeyframeImages& images,
         int level,
+        int stride,
         Sampled sampled)
       : images_(images) {
     const PhotometricOptions& options = inputs.options;
@@ -123,6 +126,8 @@ class Level {
     problem_.anchors = inputs.anchors;
     problem_.initial_cam_from_world = inputs.cam_from_world;
     problem_.depth_moments = inputs.depth_moments;
+    problem_.surface = inputs.surface;
+    problem_.texels_per_m2 = std::pow(stride * inputs.texel_size_m, -2);
     FinishTextureProblem(&problem_);
   }
 
@@ -265,6 +270,7 @@ PhotometricResult RunPhotometricStage(
     const TriMesh& mesh,
     const PlanarPartition& partition,
     const std::vector<Plane>& planes,
+    const std::vector<SurfaceMoments>& surface,
     const Atlas& atlas,
     const RgbdSequence& sequence,
     const std::vector<int>& keyframes,
@@ -336,9 +342,14 @@ PhotometricResult RunPhotometricStage(
                                         cam_from_world,
                                         DepthMomentOptions());
   }
-  const StageInputs inputs = {
-      options, sequence, cam_from_world, anchors, depth_moments};
-  Level finest(inputs, images, 0, std::move(sampled));
+  const StageInputs inputs = {options,
+                              sequence,
+                              cam_from_world,
+                              anchors,
+                              depth_moments,
+                              surface,
+                              atlas.spacing_m};
+  Level finest(inputs, images, 0, result.stride, std::move(sampled));
   const TextureProblem& problem = finest.problem();
   result.lattice = problem.lattice;
   ReconState state = InitialState(problem, planes);
@@ -360,7 +371,8 @@ PhotometricResult RunPhotometricStage(
   for (int level = options.levels - 1; level > 0; --level) {
     const KeyframeImages reduced =
         PyramidLevel(images, level, options.smoothing_sigma_px);
-    Level coarse(inputs, reduced, level, sample(result.stride << level));
+    const int stride = result.stride << level;
+    Level coarse(inputs, reduced, level, stride, sample(stride));
     EnergyWeights coarse_weights = weights;
     coarse_weights.texel_weight *= 1 << (2 * level);
     coarse.AddTerms(options.terms, start, coarse_weights.texel_weight);

@@ -67,7 +67,8 @@ struct PhotometricResult {
   std::vector<size_t> plane_texels, plane_frames;  // observed, by plane
 };
 
-// `planes` are the initial planes, one a cluster. `cam_from_world` are the
+// `planes` are the initial planes, one a cluster. `surface`, one a cluster or
+// empty: TextureProblem::surface. `cam_from_world` are the
 // initial poses of the colour camera, one a keyframe. The exposures of
 // `keyframe_images` are set if they are calibrated. Prints the fixed-width
 // table of the phases through `print` (one line a call).
@@ -75,6 +76,7 @@ PhotometricResult RunPhotometricStage(
     const TriMesh& mesh,
     const PlanarPartition& partition,
     const std::vector<Plane>& planes,
+    const std::vector<SurfaceMoments>& surface,
     const Atlas& atlas,
     const RgbdSequence& sequence,
     const std::vector<int>& keyframes,

@@ -275,9 +275,16 @@ class Run {
     }
     BeginWriting();
     LoadForTexture();
+    std::vector<SurfaceMoments> surface;
+    if (options_.plane_init == PlaneInit::kDense) {
+      surface = ClusterMoments(dense_.mesh,
+                               dense_.partition.face_cluster,
+                               dense_.partition.clusters.size());
+    }
     const PhotometricResult result = RunPhotometricStage(simplified_.mesh,
                                                          simplified_.partition,
                                                          initial_planes_,
+                                                         surface,
                                                          atlas_,
                                                          *sequence_,
                                                          keyframes_.keyframes,

@@ -11,14 +11,15 @@
 //   E_p  sum over the texels of (n.p + w)^2 [m^2], times the texel weight: all
 //        texels of every plane that has an observation, seen themselves or not,
 //        as in the paper. Were it the seen ones only, a plane of a thousand
-//        texels of which three are seen could tilt freely.
+//        texels of which three are seen could tilt freely. By default p runs
+//        over the dense mesh instead (TextureProblem::surface).
 //   E_s  sum over control vertices of |f|^2 [px^2]
 //
 // No 1/2: all schedules and solvers are judged by this function, never by
-// Ceres's internal cost (2 * cost = E_tex + E_prior + E_depth +
-// further terms; tested). The set of
-// observations is frozen: samples outside the image are clamped to its border
-// and counted (with OutOfImage::kDrop they have no residual and count as lost).
+// Ceres's internal cost (2 * cost = E_tex + E_prior + E_depth + further terms;
+// tested). The set of observations is frozen: samples outside the image are
+// clamped to its border and counted (with OutOfImage::kDrop they have no
+// residual and count as lost).
 // Energies of different formulations do not compare; rms_grey does.
 #pragma once
 

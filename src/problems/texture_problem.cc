@@ -109,7 +109,19 @@ void AddToMoment(const Eigen::Vector3f& position,
   moment->noalias() += m * m.transpose();
 }
 
-// Moments of the texels of observed planes, about the planes' anchors.
+// sum m m' over the surface, m = (x - anchor, 1), times the density.
+Eigen::Matrix4d SurfaceMoment(const SurfaceMoments& surface,
+                              const Eigen::Vector3d& anchor,
+                              double density) {
+  Eigen::Vector4d m;
+  m << surface.centroid - anchor, 1.0;
+  Eigen::Matrix4d moment = surface.area * m * m.transpose();
+  moment.topLeftCorner<3, 3>() += surface.Covariance();
+  return density * moment;
+}
+
+// Moments of the surface or the texels of observed planes, about the planes'
+// anchors.
 void BuildMoments(TextureProblem* problem) {
   const TexelSet& texels = problem->texels;
   problem->moments.assign(problem->NumPlanes(), Eigen::Matrix4d::Zero());
@@ -132,7 +144,12 @@ void BuildMoments(TextureProblem* problem) {
         texels.margin_position[i], problem->anchors[j], &problem->moments[j]);
   }
   for (int j = 0; j < problem->NumPlanes(); ++j) {
-    if (problem->plane_texels[j] == 0) problem->moments[j].setZero();
+    if (problem->plane_texels[j] == 0) {
+      problem->moments[j].setZero();
+    } else if (!problem->surface.empty()) {
+      problem->moments[j] = SurfaceMoment(
+          problem->surface[j], problem->anchors[j], problem->texels_per_m2);
+    }
   }
 }
 

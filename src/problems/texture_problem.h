@@ -16,6 +16,7 @@
 #include "geometry/plane.h"
 #include "geometry/pose.h"
 #include "geometry/warp_grid.h"
+#include "mesh/covariance.h"
 #include "problems/formulation.h"
 #include "problems/term.h"
 #include "texture/depth_moments.h"
@@ -68,9 +69,14 @@ struct TextureProblem {
   TexelSet texels;
   Observations observations;
   std::vector<TexelTile> tiles;
-  std::vector<TileSegment> segments;         // by tile, ascending keyframe
-  std::vector<size_t> plane_tile_begin;      // planes + 1: tiles of each plane
-  std::vector<Eigen::Vector3d> anchors;      // of the planes, world [m]
+  std::vector<TileSegment> segments;     // by tile, ascending keyframe
+  std::vector<size_t> plane_tile_begin;  // planes + 1: tiles of each plane
+  std::vector<Eigen::Vector3d> anchors;  // of the planes, world [m]
+  // What E_p holds the planes to: their surface in the dense mesh, counted like
+  // `texels_per_m2` texels; empty = the texels themselves, as in the paper. The
+  // light mesh strays from the dense one by more than planes move.
+  std::vector<SurfaceMoments> surface;
+  double texels_per_m2 = 0;
   std::vector<Eigen::Matrix4d> moments;      // of costs/plane_moment.h, a plane
   std::vector<size_t> plane_texels;          // observed texels of each plane
   std::vector<uint16_t> views;               // keyframes that see each texel

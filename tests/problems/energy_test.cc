@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "mesh/covariance.h"
 #include "problems/color_step.h"
 #include "problems/explicit_problem.h"
 #include "tests/support/tiny_scene.h"
@@ -164,6 +166,65 @@ TEST(Energy, PlaneTermCountsAllTexelsOfSeenPlanes) {
   }
   EXPECT_GT(of_plane[last], 0u);
   EXPECT_EQ(problem.moments[last].norm(), 0);
+}
+
+// A wavy strip as the dense surface of every plane: E_p is the density times
+// the integral of squared distances, here by the exact rule of three edge
+// midpoints, and its gradient vanishes on the strip's own least-squares plane.
+// Breaks if the anchor, the area or the covariance is mixed up.
+TEST(Energy, PlaneTermOfTheDenseMeshIsItsIntegral) {
+  TinyScene scene = MakeTinyScene();
+  TextureProblem& problem = scene.problem;
+  const Eigen::Vector3d e1(0.6, 0.8, 0), e2(-0.8, 0.6, 0), e3(0, 0, 1);
+  const auto at = [&](int i, int k) -> Eigen::Vector3d {
+    return Eigen::Vector3d(2, -1, 0.5) + 0.1 * i * e1 + 0.1 * k * e2 +
+           0.01 * std::sin(1.3 * i + 0.7 * k) * e3;
+  };
+  const Eigen::Vector3d n = Eigen::Vector3d(0.1, -0.2, 1).normalized();
+  SurfaceMoments surface;
+  double integral = 0;
+  const double w = -n.dot(Eigen::Vector3d(2, -1, 0.5));
+  const auto add = [&](const Eigen::Vector3d& a,
+                       const Eigen::Vector3d& b,
+                       const Eigen::Vector3d& c) {
+    surface = Union(surface, TriangleMoments(a, b, c));
+    for (const Eigen::Vector3d& m : {a + b, b + c, c + a}) {
+      const double distance = n.dot(0.5 * m) + w;
+      integral += 0.5 * (b - a).cross(c - a).norm() * distance * distance / 3;
+    }
+  };
+  for (int i = 0; i < 8; ++i) {
+    for (int k = 0; k < 5; ++k) {
+      add(at(i, k), at(i + 1, k), at(i + 1, k + 1));
+      add(at(i, k), at(i + 1, k + 1), at(i, k + 1));
+    }
+  }
+  problem.surface.assign(problem.NumPlanes(), surface);
+  problem.texels_per_m2 = 1600;
+  FinishTextureProblem(&problem);
+  ReconState state = scene.truth;
+  const auto set_planes = [&](const Eigen::Vector3d& normal, double offset) {
+    for (int j = 0; j < problem.NumPlanes(); ++j) {
+      Eigen::Map<Eigen::Vector4d> phi(state.planes.data() + kPlaneSize * j);
+      phi << normal, offset + normal.dot(problem.anchors[j]);
+    }
+  };
+  set_planes(n, w);
+  const double expected = 1600 * integral * problem.NumPlanes();
+  EXPECT_NEAR(EvaluateEnergy(problem, EnergyWeights(), state).e_p,
+              expected,
+              1e-9 * expected);
+  const Plane best = FitPlane(surface, n);
+  const auto e_p = [&](double tilt, double shift) {
+    const Eigen::Vector3d turned =
+        (best.normal + tilt * best.normal.unitOrthogonal()).normalized();
+    set_planes(turned, shift - turned.dot(surface.centroid));
+    return EvaluateEnergy(problem, EnergyWeights(), state).e_p;
+  };
+  for (const double step : {1e-4, -1e-4}) {
+    EXPECT_GT(e_p(step, 0), e_p(0, 0));
+    EXPECT_GT(e_p(0, step), e_p(0, 0));
+  }
 }
 
 TEST(Energy, InitialLambda1BalancesTheTerms) {
