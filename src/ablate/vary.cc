@@ -5,6 +5,7 @@
 #include <cctype>
 
 #include "util/errors.h"
+#include "util/text.h"
 
 namespace facet {
 namespace {
@@ -17,13 +18,6 @@ bool IsNameChar(char c) {
 
 bool IsLabelChar(char c) {
   return IsNameChar(c) || IsSpace(c) || c == '-' || c == '.' || c == '+';
-}
-
-std::string Trim(const std::string& text) {
-  size_t begin = 0, end = text.size();
-  while (begin < end && IsSpace(text[begin])) ++begin;
-  while (end > begin && IsSpace(text[end - 1])) --end;
-  return text.substr(begin, end - begin);
 }
 
 char Closing(char open) { return open == '[' ? ']' : open == '(' ? ')' : '}'; }
@@ -121,7 +115,7 @@ class Parser {
     size_t brace = end + 1;
     while (brace < text_.size() && IsSpace(text_[brace])) ++brace;
     if (brace >= text_.size() || text_[brace] != '{') return "";
-    const std::string label = Trim(text_.substr(at_, end - at_));
+    const std::string label(Trim(text_.substr(at_, end - at_)));
     at_ = brace;
     return label;
   }
@@ -138,7 +132,7 @@ class Parser {
         ++at_;
       }
     }
-    const std::string value = Trim(text_.substr(start, at_ - start));
+    const std::string value(Trim(text_.substr(start, at_ - start)));
     if (value.empty()) Fail(start, "expected a value ({} is the empty one)");
     return value;
   }
@@ -209,13 +203,13 @@ std::string ToString(const std::vector<VaryAxis>& axes) {
 std::vector<std::pair<std::string, std::string>> ParseFlagSet(
     const std::string& text) {
   std::vector<std::pair<std::string, std::string>> flags;
-  std::string rest = Trim(text);
+  std::string rest(Trim(text));
   while (!rest.empty()) {
     size_t end = rest.find("--", 2);
     while (end != std::string::npos && !IsSpace(rest[end - 1])) {
       end = rest.find("--", end + 2);
     }
-    const std::string part = Trim(rest.substr(0, end));
+    const std::string part(Trim(rest.substr(0, end)));
     rest = end == std::string::npos ? "" : rest.substr(end);
     const size_t equals = part.find('=');
     if (part.compare(0, 2, "--") != 0 || equals == std::string::npos ||

@@ -11,19 +11,13 @@
 #include "rgbd/pose_text.h"
 #include "util/atomic_file.h"
 #include "util/errors.h"
+#include "util/text.h"
 #include "util/warnings.h"
 
 namespace facet {
 namespace {
 
 constexpr int kMaxImageSize = 1 << 15;  // [px], beyond it the file is damaged
-
-std::string Trim(const std::string& text) {
-  const char* blanks = " \t\r\n";
-  const size_t begin = text.find_first_not_of(blanks);
-  if (begin == std::string::npos) return "";
-  return text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
-}
 
 class KeyValues {
  public:
@@ -33,7 +27,8 @@ class KeyValues {
     while (std::getline(lines, line)) {
       const size_t equals = line.find('=');
       if (equals == std::string::npos) continue;
-      values_[Trim(line.substr(0, equals))] = Trim(line.substr(equals + 1));
+      values_[std::string(Trim(line.substr(0, equals)))] =
+          std::string(Trim(line.substr(equals + 1)));
     }
   }
 

@@ -8,15 +8,10 @@
 
 #include "terms/manhattan.h"
 #include "util/errors.h"
+#include "util/text.h"
 
 namespace facet {
 namespace {
-
-std::string Trim(const std::string& text) {
-  const size_t begin = text.find_first_not_of(' ');
-  if (begin == std::string::npos) return "";
-  return text.substr(begin, text.find_last_not_of(' ') - begin + 1);
-}
 
 const TermKind* FindTermKind(const std::string& name) {
   for (const TermKind& kind : TermKinds()) {
@@ -62,12 +57,12 @@ std::vector<WeightedTerm> ParseTerms(const std::string& text) {
   if (Trim(text) == "none") return terms;
   std::stringstream items(text);
   for (std::string item; std::getline(items, item, ',');) {
-    item = Trim(item);
+    item = std::string(Trim(item));
     const size_t colon = item.find(':');
     if (colon == std::string::npos) Refuse(item, "has no weight");
     WeightedTerm term;
-    term.name = Trim(item.substr(0, colon));
-    const std::string number = Trim(item.substr(colon + 1));
+    term.name = std::string(Trim(item.substr(0, colon)));
+    const std::string number(Trim(item.substr(colon + 1)));
     char* end = nullptr;
     term.weight = std::strtod(number.c_str(), &end);
     if (number.empty() || *end != '\0' || !std::isfinite(term.weight) ||

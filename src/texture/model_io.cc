@@ -13,6 +13,7 @@
 #include "rgbd/image_files.h"
 #include "util/atomic_file.h"
 #include "util/errors.h"
+#include "util/text.h"
 
 namespace facet {
 namespace {
@@ -23,13 +24,6 @@ struct Material {
   std::string image;  // path, empty = none
   cv::Vec3b color{128, 128, 128};
 };
-
-std::string_view Trim(std::string_view text) {
-  const char* blanks = " \t\r";
-  const size_t begin = text.find_first_not_of(blanks);
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
-}
 
 // Cuts the first word off `text`.
 std::string_view NextWord(std::string_view* text) {
