@@ -26,6 +26,7 @@
 #include <string>
 #include <vector>
 
+#include "costs/pose_prior.h"
 #include "problems/texture_problem.h"
 
 namespace facet {

@@ -15,6 +15,7 @@
 #include "costs/warp_offset.h"
 #include "problems/gauge.h"
 #include "problems/reference_blocks.h"
+#include "problems/term.h"
 
 namespace facet {
 namespace {

@@ -18,6 +18,7 @@
 #include "problems/gauge.h"
 #include "problems/joint_pass.h"
 #include "problems/joint_system.h"
+#include "problems/term.h"
 
 namespace facet {
 namespace {

@@ -12,6 +12,7 @@
 #include "costs/plane_moment.h"
 #include "costs/plane_photometric_cost.h"
 #include "problems/reference_blocks.h"
+#include "problems/term.h"
 #include "util/parallel_for.h"
 
 namespace facet {

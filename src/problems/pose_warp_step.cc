@@ -14,6 +14,7 @@
 #include "costs/warp_offset.h"
 #include "problems/cell_bins.h"
 #include "problems/reference_blocks.h"
+#include "problems/term.h"
 #include "util/parallel_for.h"
 
 namespace facet {

@@ -106,22 +106,30 @@ TermBlocks::TermBlocks(const TextureProblem& problem,
 void TermBlocks::AddPose(int keyframe,
                          ReconState* state,
                          ceres::Problem* problem) const {
-  for (const size_t i : of_pose_[keyframe]) {
-    const TermBlock& block = blocks_[i];
-    Add(block, state, problem);
-    if (block.plane < 0) continue;
-    problem->SetParameterBlockConstant(ParametersOf(block, state)[1]);
-  }
+  AddAround(state->poses.data() + kPoseSize * keyframe,
+            of_pose_[keyframe],
+            state,
+            problem);
 }
 
 void TermBlocks::AddPlane(int plane,
                           ReconState* state,
                           ceres::Problem* problem) const {
-  for (const size_t i : of_plane_[plane]) {
-    const TermBlock& block = blocks_[i];
-    Add(block, state, problem);
-    if (block.keyframe < 0) continue;
-    problem->SetParameterBlockConstant(ParametersOf(block, state)[0]);
+  AddAround(state->planes.data() + kPlaneSize * plane,
+            of_plane_[plane],
+            state,
+            problem);
+}
+
+void TermBlocks::AddAround(const double* moving,
+                           const std::vector<size_t>& indices,
+                           ReconState* state,
+                           ceres::Problem* problem) const {
+  for (const size_t i : indices) {
+    Add(blocks_[i], state, problem);
+    for (double* parameter : ParametersOf(blocks_[i], state)) {
+      if (parameter != moving) problem->SetParameterBlockConstant(parameter);
+    }
   }
 }
 

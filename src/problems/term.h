@@ -59,6 +59,11 @@ class TermBlocks {
   void Add(const TermBlock& block,
            ReconState* state,
            ceres::Problem* problem) const;
+  // The blocks of these indices; all their parameters but `moving` constant.
+  void AddAround(const double* moving,
+                 const std::vector<size_t>& indices,
+                 ReconState* state,
+                 ceres::Problem* problem) const;
 
   std::vector<TermBlock> blocks_;
   std::vector<std::vector<size_t>> of_pose_, of_plane_;  // indices of blocks

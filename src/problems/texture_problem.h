@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "costs/photo_kernel.h"
-#include "costs/pose_prior.h"
 #include "geometry/image_view.h"
 #include "geometry/pinhole.h"
 #include "geometry/plane.h"
