@@ -8,7 +8,7 @@
 
 #include "tests/texture/memory_sequence.h"
 #include "tests/texture/texture_scenes.h"
-#include "texture/fill_texture.h"
+#include "texture/rasterize.h"
 #include "texture/textured_mesh.h"
 #include "util/errors.h"
 #include "util/parallel_for.h"
@@ -87,7 +87,8 @@ class Wall {
                        warps,
                        visibility,
                        options,
-                       &report);
+                       &report,
+                       only_faces);
   }
 
   TexturedMesh Model(const std::vector<cv::Mat>& pages) const {
@@ -130,6 +131,7 @@ class Wall {
   std::vector<Exposure> exposures;
   WarpLattice lattice;
   BakeReport report;
+  std::vector<char> only_faces;
 };
 
 TEST(Bake, ReproducesTheWallAndItsGutter) {
@@ -396,35 +398,37 @@ TEST(Bake, SameAtAnyThreadCount) {
   EXPECT_EQ(cv::norm(one, four, cv::NORM_INF), 0);
 }
 
+// Breaks if a wanted face lacks a texel, or nothing is saved.
+TEST(Bake, OnlyFacesGetTheColoursOfAWholeBake) {
+  Wall wall;
+  const cv::Mat whole = wall.Bake()[0];
+  const size_t seen = wall.report.seen;
+  wall.only_faces.assign(wall.scene.mesh.NumFaces(), 1);
+  EXPECT_EQ(cv::norm(whole, wall.Bake()[0], cv::NORM_INF), 0);
+  for (const size_t face : {size_t{0}, wall.only_faces.size() - 1}) {
+    wall.only_faces.assign(wall.only_faces.size(), 0);
+    wall.only_faces[face] = 1;
+    const cv::Mat part = wall.Bake()[0];
+    EXPECT_LT(wall.report.seen, seen);
+    const Chart& chart = wall.atlas.charts[wall.atlas.face_chart[face]];
+    int texels = 0;
+    RasterizeTriangle(wall.atlas.ChartUv(static_cast<int>(face)),
+                      chart.width,
+                      chart.height,
+                      [&](int column, int row) {
+                        const cv::Point at(chart.x + column, chart.y + row);
+                        EXPECT_EQ(part.at<cv::Vec3b>(at),
+                                  whole.at<cv::Vec3b>(at));
+                        ++texels;
+                      });
+    EXPECT_GT(texels, 100);
+  }
+}
+
 TEST(Bake, RefusesBadPowers) {
   Wall wall(1);
   wall.options.best_view_power = 0;
   EXPECT_THROW(wall.Bake(), OptionsError);
-}
-
-TEST(PushPull, KeepsWhatIsKnownAndStaysWithinIt) {
-  // Known pixels unchanged, filled ones inside the range of known ones; nothing
-  // known: false.
-  Random random(2);
-  const int width = 37, height = 21;
-  std::vector<float> weight(width * height, 0);
-  std::vector<Vector3f> color(width * height, Vector3f::Zero());
-  for (int i = 0; i < 40; ++i) {
-    const size_t j = random.Index(weight.size());
-    weight[j] = 1;
-    color[j] = Vector3f::Constant(static_cast<float>(random.Uniform(50, 90)));
-  }
-  std::vector<Vector3f> filled = color;
-  ASSERT_TRUE(PushPull(width, height, weight, &filled));
-  for (size_t i = 0; i < weight.size(); ++i) {
-    if (weight[i] > 0) {
-      EXPECT_EQ(filled[i], color[i]);
-    }
-    EXPECT_GE(filled[i].x(), 50 - 1e-3);
-    EXPECT_LE(filled[i].x(), 90 + 1e-3);
-  }
-  weight.assign(weight.size(), 0);
-  EXPECT_FALSE(PushPull(width, height, weight, &filled));
 }
 
 TEST(KeyframeImages, LumaAndSmoothMatchTheImage) {

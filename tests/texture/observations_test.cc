@@ -11,6 +11,7 @@
 #include "texture/atlas.h"
 #include "texture/depth_moments.h"
 #include "texture/fingerprint.h"
+#include "texture/visibility.h"
 #include "util/parallel_for.h"
 
 namespace facet {
@@ -256,6 +257,50 @@ TEST(Observations, DepthRangeAndMinViews) {
 
 // Breaks if a part of the frozen set is left out of the hash: runs on different
 // observations would then be compared.
+// The milder verdict forgives what the sensor did not see, not what hides a
+// point. Breaks if asking for it changes the strict verdict, if missing depth
+// hides a point, or if the square before the wall does not.
+TEST(FrameView, MildVerdictForgivesMissingDepthOnly) {
+  Scene s;
+  VisibilityOptions options;
+  options.min_views = 1;
+  options.test_mesh_edges = false;
+  cv::Mat depth = s.sequence.depth(0).clone();
+  depth(cv::Rect(0, 0, 120, 180)).setTo(0);
+  const RayScene rays(s.scene.mesh);
+  const FrameView view(
+      s.sequence.calibration(), s.sequence.AllPoses()[0], depth, rays, options);
+  int seen[kNumSights] = {}, mild[kNumSights] = {};
+  for (size_t i = 0; i < s.texels.size(); ++i) {
+    const Eigen::Vector3f& p = s.texels.position[i];
+    const Eigen::Vector3f normal(0, 0, -1);
+    bool may_see = false;
+    const Sight sight = view.Test(p, p, normal, &may_see);
+    ASSERT_EQ(sight, view.Test(p, p, normal));
+    ++seen[static_cast<int>(sight)];
+    mild[static_cast<int>(sight)] += may_see;
+    // Behind the square as seen from the origin, well inside its shadow.
+    const bool hidden =
+        p.z() > 1.5f && std::abs(p.x()) < 0.15f && std::abs(p.y()) < 0.15f;
+    if (hidden) {
+      EXPECT_FALSE(may_see);
+      EXPECT_NE(sight, Sight::kVisible);
+    }
+  }
+  const auto at = [](Sight sight) { return static_cast<int>(sight); };
+  EXPECT_EQ(mild[at(Sight::kVisible)], seen[at(Sight::kVisible)]);
+  EXPECT_EQ(mild[at(Sight::kOccluded)], 0);
+  EXPECT_EQ(mild[at(Sight::kOutsideImage)], 0);
+  EXPECT_GT(seen[at(Sight::kDepthMissing)], 1000);
+  EXPECT_GT(mild[at(Sight::kDepthMissing)],
+            seen[at(Sight::kDepthMissing)] * 3 / 4);
+  // The same point from behind.
+  bool may_see = true;
+  const Eigen::Vector3f p(0.5f, 0, 2);
+  EXPECT_EQ(view.Test(p, p, {0, 0, 1}, &may_see), Sight::kGrazing);
+  EXPECT_FALSE(may_see);
+}
+
 TEST(Observations, FingerprintSeesEveryChange) {
   Scene s;
   const Observations o = s.Compute(s.off);
