@@ -130,7 +130,6 @@ TEST(Energy, DoesNotChangeWhenKeyframesAreRenumbered) {
   EXPECT_NEAR(after.e_prior, before.e_prior, 1e-12 * before.e_prior);
 }
 
-// lambda1 = E_c / E_p at the start (paper, Sec. 3.3), and its two edge cases.
 TEST(Energy, PlaneTermCountsAllTexelsOfSeenPlanes) {
   // A plane of which one texel is seen is held by all its texels, those in the
   // edge margin too; one that nobody sees by none. Breaks if only seen texels
@@ -188,8 +187,8 @@ TEST(Energy, PlaneTermOfTheDenseMeshIsItsIntegral) {
                        const Eigen::Vector3d& b,
                        const Eigen::Vector3d& c) {
     surface = Union(surface, TriangleMoments(a, b, c));
-    for (const Eigen::Vector3d& m : {a + b, b + c, c + a}) {
-      const double distance = n.dot(0.5 * m) + w;
+    for (const auto& twice_middle : {a + b, b + c, c + a}) {
+      const double distance = n.dot(0.5 * twice_middle) + w;
       integral += 0.5 * (b - a).cross(c - a).norm() * distance * distance / 3;
     }
   };
@@ -227,6 +226,7 @@ TEST(Energy, PlaneTermOfTheDenseMeshIsItsIntegral) {
   }
 }
 
+// lambda1 = E_c / E_p at the start (paper, Sec. 3.3), and its two edge cases.
 TEST(Energy, InitialLambda1BalancesTheTerms) {
   TinyScene scene = MakeTinyScene();
   ReconState state = scene.truth;

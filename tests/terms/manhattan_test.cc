@@ -60,7 +60,8 @@ TEST(Manhattan, LeavesSlantedAndUnseenPlanesAlone) {
             others.blocks.size());
 }
 
-// One degree off costs 0.05^2 a texel. Breaks by a wrong unit.
+// One degree off costs 0.05^2 a texel, of the full grid. Breaks by a wrong
+// unit, or if another stride changes the weight of the term.
 TEST(Manhattan, ADegreeCostsWhatItSays) {
   TinyScene scene = MakeTinyScene();
   ReconState state = scene.truth;
@@ -71,6 +72,9 @@ TEST(Manhattan, ADegreeCostsWhatItSays) {
   const double expected =
       0.05 * 0.05 * static_cast<double>(scene.problem.plane_texels[0]);
   EXPECT_NEAR(EvaluateTerm(term, state), expected, 1e-3 * expected);
+  const Term of_stride_2 =
+      MakeManhattanTerm({scene.problem, scene.truth, 4}, 1);
+  EXPECT_NEAR(EvaluateTerm(of_stride_2, state), 4 * expected, 4e-3 * expected);
 }
 
 // Breaks if a strong term does not straighten the room.

@@ -74,10 +74,9 @@ TEST_P(Terms, JacobiansAreTheCentralDifferences) {
 // Breaks if weights do not multiply the energy.
 TEST_P(Terms, EnergyIsLinearInTheWeight) {
   const double once = EvaluateTerm(term(), state_);
+  ASSERT_GT(once, 0);
   AddTerms({{GetParam().name, 300}}, state_, 1, &scene_.problem);
   EXPECT_NEAR(EvaluateTerm(term(), state_), 3 * once, 1e-9 * once);
-  AddTerms({{GetParam().name, 100}}, state_, 4, &scene_.problem);
-  EXPECT_NEAR(EvaluateTerm(term(), state_), 4 * once, 1e-9 * once);
 }
 
 // Breaks when a solver forgets the term, takes it twice, or adds the part that
