@@ -24,6 +24,29 @@ std::string Describe(const RunResult& run) {
 
 bool Finished(const RunResult& run) { return run.problem.empty(); }
 
+// CPU time after which the finest level's E_tex came down to `share` of the way
+// to `goal`; NaN if it never did.
+double CpuToReach(const RunResult& run, double share, double goal) {
+  std::vector<double> times, energies;
+  for (const TracePoint& point : run.trace) {
+    if (point.level > 0) continue;
+    times.push_back(point.cpu_s);
+    energies.push_back(point.e_tex);
+  }
+  return TimeToReach(share, energies[0], goal, times, energies);
+}
+
+void CompareWithReference(const RunResult& reference, RunResult* run) {
+  run->same_observations = run->fingerprint == reference.fingerprint;
+  run->same_energy = SameEnergy(*run, reference);
+  if (!run->same_energy) return;
+  const double goal = reference.trace.back().e_tex;
+  const double cpu_s = CpuToReach(*run, 1, goal);
+  run->figures[FigureIndex("cpu_s_to_reference")] = cpu_s;
+  run->figures[FigureIndex("speedup_to_reference")] =
+      CpuToReach(reference, 1, goal) / cpu_s;
+}
+
 }  // namespace
 
 void CheckSameObservations(const AblationPlan& plan,
@@ -66,20 +89,12 @@ void CompareRuns(std::vector<RunResult>* runs) {
   for (RunResult& run : *runs) {
     if (!Finished(run)) continue;
     for (const RunResult& other : *runs) {
-      if (!Finished(other) || other.scan != run.scan || other.variant != 0) {
-        continue;
+      if (Finished(other) && other.scan == run.scan && other.variant == 0) {
+        CompareWithReference(other, &run);
       }
-      run.same_observations = run.fingerprint == other.fingerprint;
-      run.same_energy = SameEnergy(run, other);
-    }
-    std::vector<double> times, energies;
-    for (const TracePoint& point : run.trace) {
-      if (point.level > 0) continue;
-      times.push_back(point.cpu_s);
-      energies.push_back(point.e_tex);
     }
     run.figures[FigureIndex("cpu_s_to_99")] =
-        TimeToReach(0.99, energies[0], BestEnergy(run, *runs), times, energies);
+        CpuToReach(run, 0.99, BestEnergy(run, *runs));
   }
 }
 

@@ -24,7 +24,11 @@ bool SameEnergy(const RunResult& a, const RunResult& b);
 // Fills same_observations and same_energy of all finished runs, and
 // cpu_s_to_99: the CPU time of the first phase after which E_tex is at most
 // E(0) - 0.99 (E(0) - E_best), where E_best is the lowest E_tex in the trace of
-// any run of the same scan with the same energy.
+// any run of the same scan with the same energy. Runs with the energy of the
+// reference, the first variant on their scan, also get
+//   cpu_s_to_reference: the CPU time of the first phase after which E_tex is at
+//     most the one the reference ended with (NaN: never), and
+//   speedup_to_reference: that time of the reference, divided by it.
 void CompareRuns(std::vector<RunResult>* runs);
 
 // The lowest E_tex in the traces of all runs that share the energy of `run`.

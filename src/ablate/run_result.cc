@@ -137,6 +137,8 @@ const std::vector<Figure>& Figures() {
       {"cpu_s", "CPU [s]", kAlways, "", Figure::kComputed},
       {"wall_s", "", kAlways, "", Figure::kComputed},
       {"cpu_s_to_99", "CPU to 99 % [s]", kEnergy, "", Figure::kComputed},
+      {"cpu_s_to_reference", "", kEnergy, "", Figure::kComputed},
+      {"speedup_to_reference", "speed-up", kEnergy, "", Figure::kComputed},
       {"run_cpu_s", "", kAlways, "", Figure::kComputed},
       {"run_wall_s", "", kAlways, "", Figure::kComputed},
       {"phases_undone", "", kAlways, "/phases/undone"},

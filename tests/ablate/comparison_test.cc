@@ -101,6 +101,21 @@ TEST(Comparison, TheBestOfAllVariantsIsTheGoal) {
   EXPECT_EQ(c.runs[1].Get("cpu_s_to_99"), 2);
 }
 
+// The first variant ends at 10 after two seconds; the second is there after
+// one. Breaks if the goal is the run's own end or the best of all.
+TEST(Comparison, TheSpeedUpIsToTheEndOfTheFirstVariant) {
+  Constructed c;
+  CompareRuns(&c.runs);
+  EXPECT_EQ(c.runs[0].Get("speedup_to_reference"), 1);
+  EXPECT_EQ(c.runs[1].Get("cpu_s_to_reference"), 1);
+  EXPECT_EQ(c.runs[1].Get("speedup_to_reference"), 2);
+  // One that never gets so low has none.
+  for (TracePoint& point : c.runs[1].trace) point.e_tex += 5;
+  c.runs[1].trace[0].e_tex = 100;
+  CompareRuns(&c.runs);
+  EXPECT_TRUE(std::isnan(c.runs[1].Get("speedup_to_reference")));
+}
+
 TEST(Comparison, OtherObservationsAreRefusedOrKeptApart) {
   Constructed c;
   EXPECT_NO_THROW(CheckSameObservations(c.plan, c.runs[1], c.runs));
