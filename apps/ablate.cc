@@ -15,6 +15,7 @@
 #include "ablate/plots.h"
 #include "ablate/tables.h"
 #include "apps/ablate_plan.h"
+#include "apps/flags/formulation_list.h"
 #include "apps/flags/reconstruct.h"
 #include "apps/init_app.h"
 #include "util/atomic_file.h"

@@ -30,9 +30,6 @@ struct AblationFlags {
 // they are. The flags of the process are the base of all runs.
 AblationPlan MakeAblationPlan(const AblationFlags& flags);
 
-// Every formulation that can be varied, with its values and its meaning.
-std::string FormulationList();
-
 // "1,2.5" -> {1, 2.5}. Throws OptionsError naming the flag.
 std::vector<double> ParseNumbers(const std::string& flag,
                                  const std::string& text);

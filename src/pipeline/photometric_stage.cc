@@ -7,10 +7,9 @@
 #include <cmath>
 #include <cstdio>
 
+#include "pipeline/texel_sampler.h"
 #include "problems/color_step.h"
 #include "texture/fingerprint.h"
-#include "texture/visibility.h"
-#include "util/errors.h"
 #include "util/parallel_for.h"
 #include "util/warnings.h"
 
@@ -68,24 +67,6 @@ std::string ExposureLine(const ExposureCalibration& exposure) {
   return line;
 }
 
-struct Sampled {
-  TexelSet texels;
-  std::vector<TexelTile> tiles;
-  Observations observations;
-  VisibilityCounts counts;
-};
-
-// A stride for which the observations stay below the limit: estimated from a
-// coarse sample, whose count scales with 1 / stride^2.
-int ChooseStride(const std::function<Sampled(int)>& sample, size_t limit) {
-  constexpr int kProbe = 8;
-  const double dense =
-      static_cast<double>(sample(kProbe).observations.size()) * kProbe * kProbe;
-  const double stride =
-      std::ceil(std::sqrt(dense / static_cast<double>(limit)));
-  return std::clamp(static_cast<int>(stride), 1, 32);
-}
-
 struct StageInputs {
   const PhotometricOptions& options;
   const RgbdSequence& sequence;
@@ -104,7 +85,7 @@ class Level {
         const KeyframeImages& images,
         int level,
         int stride,
-        Sampled sampled)
+        SampledTexels sampled)
       : images_(images) {
     const PhotometricOptions& options = inputs.options;
     problem_.formulation = options.formulation;
@@ -217,36 +198,6 @@ void CountFrames(const TextureProblem& problem, PhotometricResult* result) {
   }
 }
 
-void CheckObserved(const Observations& observations,
-                   const VisibilityCounts& c,
-                   int num_keyframes) {
-  if (observations.size() > 0) return;
-  char text[700];
-  std::snprintf(
-      text,
-      sizeof(text),
-      "no keyframe sees the mesh: of %zu candidate observations of %d "
-      "keyframes %zu are behind or too far, %zu outside the image, %zu "
-      "grazing or from behind, %zu without depth, %zu at depth edges, %zu "
-      "contradict the sensor depth, %zu at edges of the mesh, %zu are "
-      "occluded, "
-      "%zu seen too rarely; run "
-      "facet-check-input to find the convention that fits, or lower "
-      "--keyframe_window where texels are seen too rarely",
-      c.candidates,
-      num_keyframes,
-      c.behind_or_far,
-      c.outside_image,
-      c.grazing,
-      c.depth_missing,
-      c.depth_edge,
-      c.depth_disagrees,
-      c.mesh_edge,
-      c.occluded,
-      c.too_few_views);
-  throw UnsolvableError(text);
-}
-
 void StoreResult(const TextureProblem& problem,
                  const ReconState& state,
                  PhotometricResult* result) {
@@ -281,45 +232,32 @@ PhotometricResult RunPhotometricStage(
     const std::function<void(const std::string&)>& print) {
   PhotometricResult result;
   const RayScene scene(mesh);
-  std::vector<Eigen::Vector3d> anchors;
-  for (const PlaneCluster& cluster : partition.clusters) {
-    anchors.push_back(cluster.centroid);
-  }
-  const auto sample = [&](int stride) {
-    Sampled s;
-    s.texels =
-        SampleTexels(mesh, partition, atlas, {stride, options.edge_margin_m});
-    s.tiles =
-        SortTexelsIntoTiles(planes, anchors, options.tile_texels, &s.texels);
-    s.observations = ComputeObservations(s.texels,
-                                         planes,
-                                         scene,
-                                         sequence,
-                                         keyframes,
-                                         cam_from_world,
-                                         visibility,
-                                         &s.counts);
-    CheckObserved(s.observations, s.counts, static_cast<int>(keyframes.size()));
-    return s;
-  };
+  const TexelSampler sampler(mesh,
+                             partition,
+                             planes,
+                             atlas,
+                             scene,
+                             sequence,
+                             keyframes,
+                             cam_from_world,
+                             visibility,
+                             options);
+  result.stride = options.stride > 0 ? options.stride : sampler.ChooseStride();
+  SampledTexels sampled = sampler.Sample(result.stride);
   if (options.exposure) {
-    const Sampled coarse = sample(ChooseStride(sample, kExposureSamples));
-    result.exposure = CalibrateExposures(coarse.texels,
-                                         coarse.observations,
-                                         planes,
-                                         sequence.calibration().color,
-                                         cam_from_world,
-                                         *keyframe_images,
-                                         options.exposure_calibration);
+    result.exposure =
+        CalibrateExposures(sampled.texels,
+                           Thinned(sampled.observations, kExposureSamples),
+                           planes,
+                           sequence.calibration().color,
+                           cam_from_world,
+                           *keyframe_images,
+                           options.exposure_calibration);
     SetExposures(
         result.exposure.exposures, options.smoothing_sigma_px, keyframe_images);
     print(ExposureLine(result.exposure));
   }
   const KeyframeImages& images = *keyframe_images;
-  result.stride = options.stride > 0
-                      ? options.stride
-                      : ChooseStride(sample, options.max_observations);
-  Sampled sampled = sample(result.stride);
   result.texels = sampled.texels.size();
   result.observation_fingerprint =
       ObservationFingerprint(sampled.texels, sampled.observations);
@@ -345,7 +283,7 @@ PhotometricResult RunPhotometricStage(
   const StageInputs inputs = {options,
                               sequence,
                               cam_from_world,
-                              anchors,
+                              sampler.anchors(),
                               depth_moments,
                               surface,
                               atlas.spacing_m};
@@ -372,7 +310,7 @@ PhotometricResult RunPhotometricStage(
     const KeyframeImages reduced =
         PyramidLevel(images, level, options.smoothing_sigma_px);
     const int stride = result.stride << level;
-    Level coarse(inputs, reduced, level, stride, sample(stride));
+    Level coarse(inputs, reduced, level, stride, sampler.Sample(stride));
     EnergyWeights coarse_weights = weights;
     coarse_weights.texel_weight *= 1 << (2 * level);
     coarse.AddTerms(options.terms, start, coarse_weights.texel_weight);

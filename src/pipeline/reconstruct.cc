@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/reconstruct.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -182,15 +181,7 @@ class Run {
             dense_.mesh.vertex_colors[birth]);
       }
     }
-    const SimplifyReport& r = result.report;
-    simplified_.report = {
-        {"faces", r.faces_after},
-        {"collapses", r.collapses},
-        {"max_error_m", r.max_error_m},
-        {"flipped_area_share_before", r.flipped_before.area_share},
-        {"flipped_area_share", r.flipped_after.area_share},
-        {"border_edges_before", r.border_edges_before},
-        {"border_edges_after", r.border_edges_after}};
+    simplified_.report = SimplifyStageReport(result.report);
     simplified_.warnings = StageWarnings();
     Save(options_, Stage::kSimplify, simplified_);
     stages_.push_back(clock.Finish(
@@ -213,23 +204,15 @@ class Run {
     WarnOfConventions(*sequence_, dense_.mesh, options_.visibility);
     keyframes_.keyframes =
         SelectKeyframes(*sequence_, options_.keyframes, &keyframes_.blur);
-    size_t usable = 0, held_out = 0;
-    for (const Frame& frame : sequence_->frames()) {
-      usable += frame.usable ? 1 : 0;
-      held_out +=
-          frame.usable && IsHeldOut(frame.number, options_.keyframes) ? 1 : 0;
-    }
-    keyframes_.report = {{"frames", sequence_->frames().size()},
-                         {"usable", usable},
-                         {"held_out", held_out},
-                         {"keyframes", keyframes_.keyframes.size()}};
+    keyframes_.report = KeyframeReport(
+        *sequence_, keyframes_.keyframes, options_.keyframes);
     keyframes_.warnings = StageWarnings();
     Save(options_, keyframes_);
     stages_.push_back(
         clock.Finish(Format("%zu of %zu usable frames, %zu held out",
                             keyframes_.keyframes.size(),
-                            usable,
-                            held_out)));
+                            keyframes_.report.at("usable").get<size_t>(),
+                            keyframes_.report.at("held_out").get<size_t>())));
   }
 
   // What several later stages need: poses, images, atlas.
@@ -385,14 +368,7 @@ class Run {
       settings[StageName(stage)] = StageSettings(options_, stage);
     }
     report_["options"] = settings;
-    // Images are read again by a resumed run, and say the same again.
-    json warnings = json::array();
-    for (const std::string& w : Warnings()) {
-      if (std::find(warnings.begin(), warnings.end(), w) == warnings.end()) {
-        warnings.push_back(w);
-      }
-    }
-    report_["warnings"] = warnings;
+    report_["warnings"] = WithoutRepetitions(Warnings());
     WriteFileAtomically(options_.output_path + "/report.json", report_.dump(1));
     return report_;
   }

@@ -6,6 +6,7 @@
 #include <sys/utsname.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <opencv2/core/version.hpp>
 #include <thread>
 
@@ -35,6 +36,46 @@ json ToJson(const EnergyTerms& t) {
           {"lost", t.lost}};
 }
 
+json SimplifyStageReport(const SimplifyReport& r) {
+  return {{"faces", r.faces_after},
+          {"collapses", r.collapses},
+          {"max_error_m", r.max_error_m},
+          {"flipped_area_share_before", r.flipped_before.area_share},
+          {"flipped_area_share", r.flipped_after.area_share},
+          {"border_edges_before", r.border_edges_before},
+          {"border_edges_after", r.border_edges_after}};
+}
+
+json KeyframeReport(const RgbdSequence& sequence,
+                    const std::vector<int>& keyframes,
+                    const KeyframeOptions& options) {
+  size_t usable = 0, held_out = 0;
+  for (const Frame& frame : sequence.frames()) {
+    usable += frame.usable ? 1 : 0;
+    held_out += frame.usable && IsHeldOut(frame.number, options) ? 1 : 0;
+  }
+  std::vector<int> numbers;
+  for (const int k : keyframes) numbers.push_back(sequence.frames()[k].number);
+  return {{"frames", sequence.frames().size()},
+          {"usable", usable},
+          {"held_out", held_out},
+          {"keyframes", keyframes.size()},
+          {"numbers", numbers}};
+}
+
+namespace {
+
+json ExposureReport(const ExposureCalibration& e) {
+  if (e.samples == 0) return {{"samples", 0}};
+  return {{"samples", e.samples},
+          {"rms_grey_before", e.rms_before},
+          {"rms_grey_after", e.rms_after},
+          {"min_grey", e.min_grey},
+          {"max_grey", e.max_grey}};
+}
+
+}  // namespace
+
 json PhotometricReport(const PhotometricResult& result,
                        const RigidMotion& slide) {
   const VisibilityCounts& v = result.visibility;
@@ -48,12 +89,7 @@ json PhotometricReport(const PhotometricResult& result,
           {"observations", result.initial.observations},
           {"observation_fingerprint", result.observation_fingerprint},
           {"lambda1", result.lambda1},
-          {"exposure",
-           {{"samples", result.exposure.samples},
-            {"rms_grey_before", result.exposure.rms_before},
-            {"rms_grey_after", result.exposure.rms_after},
-            {"min_grey", result.exposure.min_grey},
-            {"max_grey", result.exposure.max_grey}}},
+          {"exposure", ExposureReport(result.exposure)},
           {"energy",
            {{"initial", ToJson(result.initial)},
             {"final", ToJson(result.final_terms)}}},
@@ -87,6 +123,17 @@ json GeometryReport(const GeometrySummary& s) {
           {"flipped_faces_before", s.flipped_faces_before},
           {"flipped_faces", s.flipped_faces},
           {"degenerate_faces", s.degenerate_faces}};
+}
+
+std::vector<std::string> WithoutRepetitions(
+    const std::vector<std::string>& warnings) {
+  std::vector<std::string> once;
+  for (const std::string& w : warnings) {
+    if (std::find(once.begin(), once.end(), w) == once.end()) {
+      once.push_back(w);
+    }
+  }
+  return once;
 }
 
 void AddEnvironment(json* report) {

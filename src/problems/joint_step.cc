@@ -49,12 +49,11 @@ class JointEvaluation : public ceres::EvaluationCallback {
 
   void PrepareForEvaluation(bool evaluate_jacobians,
                             bool new_evaluation_point) override {
-    if (new_evaluation_point) has_cost_ = has_system_ = false;
-    if (evaluate_jacobians && !has_system_) {
-      ComputeSystem();
-    } else if (!has_cost_) {
-      SetCost(RunJointPass(problem_, *state_, false, 0).squares);
-    }
+    if (new_evaluation_point) has_pass_ = has_system_ = false;
+    // With derivatives even if Ceres asks for the cost of a step alone: it
+    // accepts most steps, and then asks for them at the same point.
+    if (!has_pass_) RunPass();
+    if (evaluate_jacobians && !has_system_) ComputeSystem();
     use_system_ = evaluate_jacobians;
     // An approximate Hessian may explain more than there is: a constant added
     // to the cost keeps the last row real.
@@ -84,21 +83,33 @@ class JointEvaluation : public ceres::EvaluationCallback {
   }
 
  private:
+  void RunPass() {
+    pass_ = RunJointPass(problem_, *state_, true, own_share_);
+    if (with_planes_) basis_ = pass_.plane_axes;
+    // weighted E_c, and with planes lambda1 E_p.
+    cost_ = weights_.texel_weight * pass_.squares;
+    for (int j = 0; with_planes_ && j < problem_.NumPlanes(); ++j) {
+      const Eigen::Map<const Eigen::Vector4d> phi(state_->planes.data() +
+                                                  kPlaneSize * j);
+      cost_ += weights_.texel_weight * weights_.lambda1 *
+               phi.dot(problem_.moments[j] * phi);
+    }
+    has_pass_ = true;
+  }
+
   void ComputeSystem() {
     lift_.clear();
     for (int k = 0; k < problem_.NumKeyframes(); ++k) {
       lift_.push_back(LeftPoseLift(state_->poses.data() + kPoseSize * k));
     }
-    const JointPass pass = RunJointPass(problem_, *state_, true, own_share_);
-    if (with_planes_) basis_ = pass.plane_axes;
     const double weight = weights_.texel_weight;
     const double plane_weight = weight * weights_.lambda1;
     JointHessian hessian =
         config_.joint_method == JointMethod::kExact
             ? ExactHessian(problem_, *state_, basis_, weight)
-            : TensorHessian(problem_, pass, basis_, weight, common_share_);
+            : TensorHessian(problem_, pass_, basis_, weight, common_share_);
     LimitPlaneSteps(problem_,
-                    pass,
+                    pass_,
                     *state_,
                     basis_,
                     weight,
@@ -107,26 +118,13 @@ class JointEvaluation : public ceres::EvaluationCallback {
                     config_.max_plane_offset_m,
                     &hessian);
     system_ = FactorJointSystem(problem_,
-                                pass,
+                                pass_,
                                 *state_,
                                 std::move(hessian),
                                 basis_,
                                 weight,
                                 plane_weight);
-    SetCost(pass.squares);
     has_system_ = true;
-  }
-
-  // weighted E_c, and with planes lambda1 E_p.
-  void SetCost(double squares) {
-    cost_ = weights_.texel_weight * squares;
-    for (int j = 0; with_planes_ && j < problem_.NumPlanes(); ++j) {
-      const Eigen::Map<const Eigen::Vector4d> phi(state_->planes.data() +
-                                                  kPlaneSize * j);
-      cost_ += weights_.texel_weight * weights_.lambda1 *
-               phi.dot(problem_.moments[j] * phi);
-    }
-    has_cost_ = true;
   }
 
   const TextureProblem& problem_;
@@ -136,7 +134,8 @@ class JointEvaluation : public ceres::EvaluationCallback {
   bool with_planes_;
   const ReconState* state_;
   double cost_ = 0, reserve_ = 0;
-  bool has_cost_ = false, has_system_ = false, use_system_ = false;
+  bool has_pass_ = false, has_system_ = false, use_system_ = false;
+  JointPass pass_;
   JointSystem system_;
   std::vector<PlaneBasis> basis_;
   std::vector<PoseLift> lift_;

@@ -134,6 +134,14 @@ RayScene::RayScene(const TriMesh& mesh) : impl_(new Impl) {
 
 RayScene::~RayScene() = default;
 
+const std::vector<Vector3d>& RayScene::vertices() const {
+  return impl_->vertices;
+}
+
+const std::vector<std::array<int, 3>>& RayScene::faces() const {
+  return impl_->faces;
+}
+
 RayHit RayScene::Intersect(const Vector3d& origin,
                            const Vector3d& direction,
                            double t_min,

@@ -13,6 +13,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -43,6 +44,9 @@ class RayScene {
   ~RayScene();
   RayScene(const RayScene&) = delete;
   RayScene& operator=(const RayScene&) = delete;
+
+  const std::vector<Eigen::Vector3d>& vertices() const;
+  const std::vector<std::array<int, 3>>& faces() const;
 
   // First hit with t in (t_min, t_max). `direction` need not be unit length.
   // Embree finds the face in float32; t, u, v are then solved for in double.

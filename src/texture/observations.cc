@@ -61,6 +61,22 @@ std::vector<TexelBlock> MakeBlocks(const TexelSet& texels,
 
 }  // namespace
 
+Observations Thinned(const Observations& observations, size_t limit) {
+  const auto n =
+      static_cast<uint32_t>((observations.size() + limit - 1) / limit);
+  if (n <= 1) return observations;
+  Observations thin;
+  thin.begin.push_back(0);
+  for (size_t k = 0; k + 1 < observations.begin.size(); ++k) {
+    for (size_t i = observations.begin[k]; i < observations.begin[k + 1]; ++i) {
+      const uint32_t texel = observations.texel[i];
+      if (texel % n == 0) thin.texel.push_back(texel);
+    }
+    thin.begin.push_back(thin.texel.size());
+  }
+  return thin;
+}
+
 Observations ComputeObservations(const TexelSet& texels,
                                  const std::vector<Plane>& planes,
                                  const RayScene& scene,

@@ -25,6 +25,10 @@ struct Observations {
   size_t size() const { return texel.size(); }
 };
 
+// Those of every n-th texel, n the least for which at most `limit` (at least 1)
+// remain on average.
+Observations Thinned(const Observations& observations, size_t limit);
+
 // The tests of method ch. 6, each with its own switch.
 struct VisibilityOptions {
   double min_depth_m = 0.3, max_depth_m = 6.0;  // z of the texel [m]

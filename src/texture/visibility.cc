@@ -6,6 +6,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "render/depth_raster.h"
 #include "rgbd/depth.h"
 
 namespace facet {
@@ -63,16 +64,17 @@ FrameView::FrameView(const RgbdCalibration& calibration,
                            options.depth_edge_dilate_px);
   }
   if (options.test_occlusion || options.test_mesh_edges) {
-    DepthRender render = RenderDepth(scene, color_, color_cam_from_world);
+    std::vector<float> depth_of_mesh =
+        RasterizeDepth(scene, color_, color_cam_from_world);
+    const cv::Mat z(
+        color_.height, color_.width, CV_32F, depth_of_mesh.data());
     if (options.test_mesh_edges) {
-      mesh_edges_ = SurfaceEdgeMask(
-          cv::Mat(render.height, render.width, CV_32F, render.depth.data()),
-          options.mesh_edge_jump_m,
-          options.mesh_edge_jump_rel,
-          options.mesh_edge_dilate_px);
+      mesh_edges_ = SurfaceEdgeMask(z,
+                                    options.mesh_edge_jump_m,
+                                    options.mesh_edge_jump_rel,
+                                    options.mesh_edge_dilate_px);
     }
-    for (float& z : render.depth) z = z > 0 ? z : kNothing;
-    const cv::Mat z(render.height, render.width, CV_32F, render.depth.data());
+    for (float& pixel : depth_of_mesh) pixel = pixel > 0 ? pixel : kNothing;
     cv::erode(z, nearest_, cv::Mat::ones(3, 3, CV_8U));
     cv::dilate(z, farthest_, cv::Mat::ones(3, 3, CV_8U));
   }
