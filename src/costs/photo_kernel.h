@@ -52,6 +52,24 @@ struct PhotoTexel {
   float color;
 };
 
+// A texel of a patch of a plane: in-plane coordinates about the patch's centre
+// and the distance n.(p - q) of the mesh point from the plane [m], and the
+// colour that residuals are taken about.
+struct PhotoPatchTexel {
+  float e1, e2, s;
+  float color;
+};
+
+// Sums over samples of a view, w = rho' (1 without a robust loss), gn as in
+// problems/joint_rows.h.
+struct PhotoViewSums {
+  float squares;       // r^2
+  float g1, g2, gn;    // w r g
+  float e1_g2, e1_gn;  // w r g, times the texel's coordinate
+  float e2_g1, e2_gn;
+  float s_g1, s_g2, s_gn;
+};
+
 struct PhotoCounts {
   size_t used = 0;     // all samples
   size_t clamped = 0;  // of them outside the image, moved to its border
@@ -96,6 +114,20 @@ struct PhotoKernel {
                           float* g1,
                           float* g2,
                           PhotoCounts* counts);
+
+  // From samples of sample_gradient in one view of a patch, whose texels are
+  // ids[k] - first. `weight` may be null. ray = (e1.d, e2.d, n.d) of the
+  // viewing direction d to the patch's centre, not normalised.
+  void (*view_sums)(const float* intensity,
+                    const float* g1,
+                    const float* g2,
+                    const float* weight,
+                    const PhotoPatchTexel* texels,
+                    const uint32_t* ids,
+                    uint32_t first,
+                    size_t n,
+                    const float ray[3],
+                    PhotoViewSums* sums);
 
   // Sum rho(r^2) over texels given as plane points q in the warp cell whose
   // upper left vertex is in lattice column a and row b; frame.warp has just the

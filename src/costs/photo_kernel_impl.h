@@ -94,6 +94,55 @@ void SampleGradient(const PhotoFrame& frame,
   counts->used += n;
 }
 
+// Samples of weight 0 may have no intensity: they count as residual 0.
+void ViewSums(const float* intensity,
+              const float* g1,
+              const float* g2,
+              const float* weight,
+              const PhotoPatchTexel* texels,
+              const uint32_t* ids,
+              uint32_t first,
+              size_t n,
+              const float ray[3],
+              PhotoViewSums* sums) {
+  Lane r, e1, e2, s;
+  const float inverse = -1.0f / ray[2];
+  PhotoViewSums t = {};
+  for (size_t begin = 0; begin < n; begin += kLanes) {
+    const int m = ChunkSize(n - begin);
+    for (int i = 0; i < m; ++i) {
+      const PhotoPatchTexel& texel = texels[ids[begin + i] - first];
+      e1.v[i] = texel.e1;
+      e2.v[i] = texel.e2;
+      s.v[i] = texel.s;
+      r.v[i] = intensity[begin + i] - texel.color;
+    }
+    if (weight) {
+      for (int i = 0; i < m; ++i) {
+        const float w = weight[begin + i];
+        r.v[i] = w == 0 ? 0.0f : w * r.v[i];
+      }
+    }
+    for (int i = 0; i < m; ++i) {
+      const float a = e1.v[i], b = e2.v[i];
+      const float h1 = r.v[i] * g1[begin + i], h2 = r.v[i] * g2[begin + i];
+      const float hn = (h1 * (ray[0] + a) + h2 * (ray[1] + b)) * inverse;
+      t.squares += r.v[i] * r.v[i];
+      t.g1 += h1;
+      t.g2 += h2;
+      t.gn += hn;
+      t.e1_g2 += a * h2;
+      t.e1_gn += a * hn;
+      t.e2_g1 += b * h1;
+      t.e2_gn += b * hn;
+      t.s_g1 += s.v[i] * h1;
+      t.s_g2 += s.v[i] * h2;
+      t.s_gn += s.v[i] * hn;
+    }
+  }
+  *sums = t;
+}
+
 double FrameCell(const PhotoFrame& frame,
                  float a,
                  float b,
@@ -125,7 +174,7 @@ double FrameCell(const PhotoFrame& frame,
     PointGradient(frame, warped, c, &columns[3], &columns[4], &columns[5]);
     PoseColumns(c, columns);
     if (num_columns == 14) WarpColumns(c, columns + 6);
-    AddGram(columns, num_columns + 1, gram);
+    AddGram(columns, num_columns + 1, LanesOf(c), gram);
   }
   if (gram && frame.loss != LossKind::kSquared) *corner = before + cost;
   counts->used += n;
@@ -140,7 +189,8 @@ inline void ProjectOntoPlane(const float plane[4],
                              Lane* ax,
                              Lane* ay,
                              Lane* az) {
-  for (int i = 0; i < kLanes; ++i) {
+  const int lanes = LanesOf(*c);
+  for (int i = 0; i < lanes; ++i) {
     const float dx = c->qx.v[i] - anchor[0], dy = c->qy.v[i] - anchor[1];
     const float dz = c->qz.v[i] - anchor[2];
     const float d = plane[0] * dx + plane[1] * dy + plane[2] * dz + plane[3];
@@ -180,7 +230,8 @@ double PlaneSegment(const PhotoFrame& frame,
     cost += static_cast<double>(CostOf(frame, &columns[4], &c));
     if (!gram) continue;
     PointGradient(frame, frame.warp != nullptr, c, &ha, &hb, &hc);
-    for (int i = 0; i < kLanes; ++i) {
+    const int lanes = LanesOf(c);
+    for (int i = 0; i < lanes; ++i) {
       const float a = ha.v[i], b = hb.v[i], h = hc.v[i];
       const float gx = a * r[0] + b * r[3] + h * r[6];  // h R
       const float gy = a * r[1] + b * r[4] + h * r[7];
@@ -191,7 +242,7 @@ double PlaneSegment(const PhotoFrame& frame,
       columns[2].v[i] = -(gn * az.v[i] + s.v[i] * gz);
       columns[3].v[i] = -gn;
     }
-    AddGram(columns, 5, gram);
+    AddGram(columns, 5, lanes, gram);
   }
   if (gram && frame.loss != LossKind::kSquared) *corner = before + cost;
   counts->used += n;
@@ -199,8 +250,12 @@ double PlaneSegment(const PhotoFrame& frame,
 }
 
 extern const PhotoKernel kKernel;
-const PhotoKernel kKernel = {
-    FACET_KERNEL_NAME, Sample, SampleGradient, FrameCell, PlaneSegment};
+const PhotoKernel kKernel = {FACET_KERNEL_NAME,
+                             Sample,
+                             SampleGradient,
+                             ViewSums,
+                             FrameCell,
+                             PlaneSegment};
 
 }  // namespace FACET_KERNEL_NAMESPACE
 }  // namespace facet

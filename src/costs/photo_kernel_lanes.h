@@ -17,20 +17,28 @@ inline int ChunkSize(size_t left) {
   return left < kLanes ? static_cast<int>(left) : kLanes;
 }
 
+// Work is done on a multiple of so many: short chunks are common.
+constexpr int kStep = 16;
+
 struct alignas(64) Lane {
   float v[kLanes];
 };
 
 // All that one chunk of observations needs.
 struct Chunk {
-  Lane qx, qy, qz, color;   // input points
-  Lane x, y, z;             // camera coordinates
-  Lane u, v;                // warped pixel
-  Lane d00, d10, d01, d11;  // warp weights
-  Lane dxx, dxy, dyx, dyy;  // D = dF/du, row-major
-  Lane value, ix, iy;       // I and its gradient at F(u)
-  Lane valid;               // 1, or 0 in the padding
+  Lane qx, qy, qz, color;         // input points
+  Lane x, y, z;                   // camera coordinates
+  Lane u, v;                      // warped pixel
+  Lane d00, d10, d01, d11;        // warp weights
+  Lane dxx, dxy, dyx, dyy;        // D = dF/du, row-major
+  Lane value, ix, iy;             // I and its gradient at F(u)
+  Lane valid;                     // 1, or 0 in the padding
+  alignas(64) int pixel[kLanes];  // index of the upper left of four pixels
+  int lanes;                      // in use, padding included
 };
+
+// Of lanes that are a multiple of kStep, as the compiler should know.
+inline int LanesOf(const Chunk& c) { return c.lanes & -kStep; }
 
 inline void Load(const PhotoTexel* texels,
                  const uint32_t* ids,
@@ -44,7 +52,8 @@ inline void Load(const PhotoTexel* texels,
     c->color.v[i] = texel.color;
     c->valid.v[i] = 1;
   }
-  for (int i = m; i < kLanes; ++i) {
+  c->lanes = (m + kStep - 1) & -kStep;
+  for (int i = m; i < c->lanes; ++i) {
     c->qx.v[i] = c->qx.v[0];
     c->qy.v[i] = c->qy.v[0];
     c->qz.v[i] = c->qz.v[0];
@@ -55,8 +64,9 @@ inline void Load(const PhotoTexel* texels,
 
 // y = R q + t and u = pi(y). Counts points behind the camera.
 inline void Project(const PhotoFrame& f, Chunk* c, PhotoCounts* counts) {
+  const int lanes = LanesOf(*c);
   float behind = 0;
-  for (int i = 0; i < kLanes; ++i) {
+  for (int i = 0; i < lanes; ++i) {
     const float qx = c->qx.v[i], qy = c->qy.v[i], qz = c->qz.v[i];
     const float x = f.r[0] * qx + f.r[1] * qy + f.r[2] * qz + f.t[0];
     const float y = f.r[3] * qx + f.r[4] * qy + f.r[5] * qz + f.t[1];
@@ -82,7 +92,8 @@ inline void WarpInCell(const PhotoFrame& f,
                        const float f01[2],
                        const float f11[2],
                        Chunk* c) {
-  for (int i = 0; i < kLanes; ++i) {
+  const int lanes = LanesOf(*c);
+  for (int i = 0; i < lanes; ++i) {
     const float al = c->u.v[i] * f.inverse_cell_width - a;
     const float be = c->v.v[i] * f.inverse_cell_height - b;
     const float w00 = (1 - al) * (1 - be), w10 = al * (1 - be);
@@ -109,7 +120,8 @@ inline void WarpAnywhere(const PhotoFrame& f, Chunk* c) {
   const int last_a = f.columns - 2, last_b = f.rows - 2;
   const float max_a = static_cast<float>(last_a);
   const float max_b = static_cast<float>(last_b);
-  for (int i = 0; i < kLanes; ++i) {
+  const int lanes = LanesOf(*c);
+  for (int i = 0; i < lanes; ++i) {
     const float gx = c->u.v[i] * f.inverse_cell_width;
     const float gy = c->v.v[i] * f.inverse_cell_height;
     const float cx = gx > 0 ? (gx < max_a ? gx : max_a) : 0.0f;

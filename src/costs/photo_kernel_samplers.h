@@ -15,9 +15,23 @@ inline void SampleBilinear(const PhotoFrame& f, Chunk* c, PhotoCounts* counts) {
   const float max_x = static_cast<float>(f.width - 2);
   const float max_y = static_cast<float>(f.height - 2);
   const int stride = static_cast<int>(f.stride);
+  const int lanes = LanesOf(*c);
   const float* image = f.image;
   float clamped = 0;
-  for (int i = 0; i < kLanes; ++i) {
+  // Neighbouring texels of a tile lie two pixels apart: most rows of an image
+  // are touched once and come from memory. All are asked for before any is
+  // waited for.
+  for (int i = 0; i < lanes; ++i) {
+    const float u = c->u.v[i], v = c->v.v[i];
+    const float uc = u > 0 ? (u < max_x ? u : max_x) : 0.0f;
+    const float vc = v > 0 ? (v < max_y ? v : max_y) : 0.0f;
+    c->pixel[i] = static_cast<int>(vc) * stride + static_cast<int>(uc);
+  }
+  for (int i = 0; i < lanes; ++i) {
+    __builtin_prefetch(image + c->pixel[i]);
+    __builtin_prefetch(image + c->pixel[i] + stride);
+  }
+  for (int i = 0; i < lanes; ++i) {
     const float u = c->u.v[i], v = c->v.v[i];
     const float uc = u > 0 ? (u < max_u ? u : max_u) : 0.0f;
     const float vc = v > 0 ? (v < max_v ? v : max_v) : 0.0f;
@@ -27,7 +41,7 @@ inline void SampleBilinear(const PhotoFrame& f, Chunk* c, PhotoCounts* counts) {
     const int x = static_cast<int>(uc < max_x ? uc : max_x);
     const int y = static_cast<int>(vc < max_y ? vc : max_y);
     const float a = uc - static_cast<float>(x), b = vc - static_cast<float>(y);
-    const int k = y * stride + x;
+    const int k = c->pixel[i];
     const float i00 = image[k], i10 = image[k + 1];
     const float i01 = image[k + stride], i11 = image[k + stride + 1];
     const float top = i00 + a * (i10 - i00), bottom = i01 + a * (i11 - i01);
@@ -48,8 +62,9 @@ __attribute__((noinline)) void SampleScharr(const PhotoFrame& f,
   const float max_x = static_cast<float>(f.width - 2);
   const float max_y = static_cast<float>(f.height - 2);
   const int stride = static_cast<int>(f.stride);
+  const int lanes = LanesOf(*c);
   const float *gx = f.gradient_x, *gy = f.gradient_y;
-  for (int i = 0; i < kLanes; ++i) {
+  for (int i = 0; i < lanes; ++i) {
     const float u = c->u.v[i], v = c->v.v[i];
     const float uc = u > 0 ? (u < max_u ? u : max_u) : 0.0f;
     const float vc = v > 0 ? (v < max_v ? v : max_v) : 0.0f;
@@ -77,10 +92,11 @@ __attribute__((noinline)) void SampleBicubic(const PhotoFrame& f,
   const float max_x = static_cast<float>(f.width - 2);
   const float max_y = static_cast<float>(f.height - 2);
   const int stride = static_cast<int>(f.stride);
+  const int lanes = LanesOf(*c);
   const int last_x = f.width - 1, last_y = f.height - 1;
   const float* image = f.image;
   float clamped = 0;
-  for (int i = 0; i < kLanes; ++i) {
+  for (int i = 0; i < lanes; ++i) {
     const float u = c->u.v[i], v = c->v.v[i];
     const float uc = u > 0 ? (u < max_u ? u : max_u) : 0.0f;
     const float vc = v > 0 ? (v < max_v ? v : max_v) : 0.0f;
@@ -129,8 +145,9 @@ __attribute__((noinline)) void DropOutside(const PhotoFrame& f,
                                            PhotoCounts* counts) {
   const float max_u = static_cast<float>(f.width - 1);
   const float max_v = static_cast<float>(f.height - 1);
+  const int lanes = LanesOf(*c);
   float lost = 0;
-  for (int i = 0; i < kLanes; ++i) {
+  for (int i = 0; i < lanes; ++i) {
     const float u = c->u.v[i], v = c->v.v[i];
     const bool inside = (u >= 0) & (u <= max_u) & (v >= 0) & (v <= max_v) &
                         (c->z.v[i] > kMinDepth);

@@ -204,8 +204,8 @@ class Run {
     WarnOfConventions(*sequence_, dense_.mesh, options_.visibility);
     keyframes_.keyframes =
         SelectKeyframes(*sequence_, options_.keyframes, &keyframes_.blur);
-    keyframes_.report = KeyframeReport(
-        *sequence_, keyframes_.keyframes, options_.keyframes);
+    keyframes_.report =
+        KeyframeReport(*sequence_, keyframes_.keyframes, options_.keyframes);
     keyframes_.warnings = StageWarnings();
     Save(options_, keyframes_);
     stages_.push_back(

@@ -76,8 +76,8 @@ TexelSampler::TexelSampler(const TriMesh& mesh,
 
 SampledTexels TexelSampler::SampleGrid(int stride) const {
   SampledTexels sampled;
-  sampled.texels = SampleTexels(
-      mesh_, partition_, atlas_, {stride, options_.edge_margin_m});
+  sampled.texels =
+      SampleTexels(mesh_, partition_, atlas_, {stride, options_.edge_margin_m});
   sampled.tiles = SortTexelsIntoTiles(
       planes_, anchors_, options_.tile_texels, &sampled.texels);
   return sampled;

@@ -26,6 +26,22 @@ std::vector<std::vector<std::pair<uint32_t, uint32_t>>> SegmentsByFrame(
   return by_frame;
 }
 
+// block += scale * bt * b, in the order of memory.
+void AddProduct(const Eigen::Matrix<float, 6, 2>& bt,
+                const Eigen::Matrix<float, 2, 6>& b,
+                float scale,
+                Eigen::Matrix<double, 6, 6>* block) {
+  double* sum = block->data();
+  const float* left = bt.data();
+  for (int column = 0; column < 6; ++column) {
+    const float b0 = scale * b(0, column), b1 = scale * b(1, column);
+    for (int i = 0; i < 6; ++i) {
+      sum[6 * column + i] +=
+          static_cast<double>(left[i] * b0 + left[6 + i] * b1);
+    }
+  }
+}
+
 // Block row i of the pose part, written by one task alone:
 //   H_ii += c_i B_i' T B_i,  H_ik -= kappa c_i c_k / sum(c) B_i' T B_k.
 void AddPoseRows(const TextureProblem& problem,
@@ -35,21 +51,29 @@ void AddPoseRows(const TextureProblem& problem,
                  double common_share,
                  Eigen::MatrixXd* h) {
   const auto by_frame = SegmentsByFrame(problem);
-  ParallelFor(0, by_frame.size(), [&](size_t i) {
+  const size_t num_keyframes = by_frame.size();
+  ParallelFor(0, num_keyframes, [&](size_t i) {
+    // Blocks one after the other: the columns of h are far apart.
+    std::vector<Eigen::Matrix<double, 6, 6>> row(
+        num_keyframes - i, Eigen::Matrix<double, 6, 6>::Zero());
     for (const auto& [t, s] : by_frame[i]) {
       const TexelTile& tile = problem.tiles[t];
       const TileView& view = pass.views[s];
       const Eigen::Matrix<float, 6, 2> bt =
           view.pose_shift.transpose() *
           (weight * view.share * pass.tensors[t].Sum()).cast<float>();
-      h->block<6, 6>(6 * i, 6 * i) += (bt * view.pose_shift).cast<double>();
-      const float scale = static_cast<float>(common_share / share_sum[t]);
+      AddProduct(bt, view.pose_shift, 1.0f, &row[0]);
+      const float scale = static_cast<float>(-common_share / share_sum[t]);
       for (size_t other = s; other < tile.segment_end; ++other) {
         const TileView& second = pass.views[other];
-        const int k = problem.segments[other].keyframe;
-        h->block<6, 6>(6 * i, 6 * k) -=
-            (bt * (scale * second.share) * second.pose_shift).cast<double>();
+        AddProduct(bt,
+                   second.pose_shift,
+                   scale * second.share,
+                   &row[problem.segments[other].keyframe - i]);
       }
+    }
+    for (size_t k = i; k < num_keyframes; ++k) {
+      h->block<6, 6>(6 * i, 6 * k) += row[k - i];
     }
   });
 }

@@ -41,36 +41,43 @@ TileView ViewAt(const Eigen::Vector3d& q,
   return view;
 }
 
+// Sums of gradients over the views of a texel, with a robust loss weighted with
+// rho'.
+struct TexelGradients {
+  float g1 = 0, g2 = 0, g11 = 0, g12 = 0, g22 = 0, views = 0;
+};
+
 // Adds `weight` times T(p) of every texel as (11, 12, 22), from the mean
-// gradient and the views' own ones; with a robust loss both weighted with rho'.
+// gradient and the views' own ones.
 void AddTexelTensors(const TextureProblem& problem,
                      const TexelTile& tile,
                      const TileSamples& samples,
                      double own_share,
                      double weight,
                      std::vector<Eigen::Vector3d>* tensors) {
-  const size_t n = tile.texel_end - tile.texel_begin;
-  const auto product = [](double g1, double g2) {
-    return Eigen::Vector3d(g1 * g1, g1 * g2, g2 * g2);
-  };
-  std::vector<Eigen::Vector2d> mean(n, Eigen::Vector2d::Zero());
-  std::vector<Eigen::Vector3d> own(n, Eigen::Vector3d::Zero());
-  std::vector<double> views(n, 0.0);
+  std::vector<TexelGradients> texels(tile.texel_end - tile.texel_begin);
   const float* weights =
       samples.weight.empty() ? nullptr : samples.weight.data();
   ForEachSample(problem, tile, samples, [&](size_t, size_t texel, size_t i) {
-    const double w = weights ? weights[i] : 1.0;
+    const float w = weights ? weights[i] : 1.0f;
     if (w == 0) return;
-    const double g1 = samples.g1[i], g2 = samples.g2[i];
-    mean[texel] += w * Eigen::Vector2d(g1, g2);
-    own[texel] += w * product(g1, g2);
-    views[texel] += w;
+    TexelGradients& t = texels[texel];
+    const float g1 = samples.g1[i], g2 = samples.g2[i];
+    const float wg1 = w * g1, wg2 = w * g2;
+    t.g1 += wg1;
+    t.g2 += wg2;
+    t.g11 += wg1 * g1;
+    t.g12 += wg1 * g2;
+    t.g22 += wg2 * g2;
+    t.views += w;
   });
-  for (size_t i = 0; i < n; ++i) {
-    if (views[i] == 0) continue;
-    const Eigen::Vector2d g = mean[i] / views[i];
-    (*tensors)[i] += weight * (own_share / views[i] * own[i] +
-                               (1 - own_share) * product(g.x(), g.y()));
+  for (size_t i = 0; i < texels.size(); ++i) {
+    const TexelGradients& t = texels[i];
+    if (t.views == 0) continue;
+    const double n = t.views, g1 = t.g1 / n, g2 = t.g2 / n;
+    (*tensors)[i] +=
+        weight * (own_share / n * Eigen::Vector3d(t.g11, t.g12, t.g22) +
+                  (1 - own_share) * Eigen::Vector3d(g1 * g1, g1 * g2, g2 * g2));
   }
 }
 
@@ -97,46 +104,11 @@ TileTensor SumTensors(const TextureProblem& problem,
   return sum;
 }
 
-// Exact gradient of one view of a tile, summed over its samples.
-SegmentGradient GradientOf(const TextureProblem& problem,
-                           const std::vector<PhotoTexel>& points,
-                           const TexelTile& tile,
-                           const TileSegment& segment,
-                           const TileSamples& samples,
-                           size_t offset,
-                           const PlaneFrame& frame,
-                           const FramePose& pose) {
-  const Eigen::Vector3d anchor = problem.anchors[tile.plane] - problem.origin;
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();   // sum r G
-  Eigen::Vector3d moment = Eigen::Vector3d::Zero();  // sum r q x G
-  SegmentGradient gradient;
-  const float* weights =
-      samples.weight.empty() ? nullptr : samples.weight.data() + offset;
-  for (size_t i = segment.begin; i < segment.end; ++i) {
-    const uint32_t id = problem.observations.texel[i];
-    const size_t k = offset + i - segment.begin;
-    const Eigen::Vector3d q(points[id].x, points[id].y, points[id].z);
-    const Eigen::Vector3d d = q - pose.center;
-    const double weight = weights ? weights[i - segment.begin] : 1.0;
-    if (weight == 0) continue;
-    const double g1 = samples.g1[k], g2 = samples.g2[k];
-    const double gn = frame.AlongNormal(g1, g2, d);
-    const double r = weight * (static_cast<double>(samples.intensity[k]) -
-                               samples.mean[id - tile.texel_begin]);
-    const Eigen::Vector3d rg =
-        r * (g1 * frame.e1 + g2 * frame.e2 + gn * frame.n);
-    force += rg;
-    moment += q.cross(rg);
-    const Eigen::Vector3d p =
-        problem.texels.position[id].cast<double>() - problem.origin;
-    const double s = frame.n.dot(p - q);
-    gradient.plane.head<3>() -= r * gn * (p - anchor) + s * rg;
-    gradient.plane[3] -= r * gn;
-  }
-  const Eigen::Vector3d force_in_cam = pose.r * force;
-  gradient.pose << pose.r * moment + pose.t.cross(force_in_cam), force_in_cam;
-  return gradient;
-}
+// A tile as the kernel sees it: texels about its centre in the plane's axes.
+struct Patch {
+  Eigen::Vector3d center, anchor;
+  std::vector<PhotoPatchTexel> texels;  // colours not set
+};
 
 Eigen::Vector3d TileCenter(const TexelTile& tile,
                            const std::vector<PhotoTexel>& points) {
@@ -145,6 +117,76 @@ Eigen::Vector3d TileCenter(const TexelTile& tile,
     sum += Eigen::Vector3d(points[i].x, points[i].y, points[i].z);
   }
   return sum / static_cast<double>(tile.texel_end - tile.texel_begin);
+}
+
+Patch MakePatch(const TextureProblem& problem,
+                const TexelTile& tile,
+                const std::vector<PhotoTexel>& points,
+                const PlaneFrame& frame) {
+  Patch patch;
+  patch.center = TileCenter(tile, points);
+  patch.anchor = problem.anchors[tile.plane] - problem.origin;
+  patch.texels.resize(tile.texel_end - tile.texel_begin);
+  for (size_t i = 0; i < patch.texels.size(); ++i) {
+    const size_t id = tile.texel_begin + i;
+    const Eigen::Vector3d q(points[id].x, points[id].y, points[id].z);
+    const Eigen::Vector3d arm = q - patch.center;
+    const Eigen::Vector3d p =
+        problem.texels.position[id].cast<double>() - problem.origin;
+    patch.texels[i].e1 = static_cast<float>(frame.e1.dot(arm));
+    patch.texels[i].e2 = static_cast<float>(frame.e2.dot(arm));
+    patch.texels[i].s = static_cast<float>(frame.n.dot(p - q));
+  }
+  return patch;
+}
+
+// Exact gradient of one view of a tile, from sums over its samples:
+// q = center + a e1 + b e2, p - q = s n, and G as in problems/joint_rows.h.
+SegmentGradient GradientOf(const PhotoViewSums& sums,
+                           const Patch& patch,
+                           const PlaneFrame& frame,
+                           const FramePose& pose) {
+  const Eigen::Vector3d force =
+      sums.g1 * frame.e1 + sums.g2 * frame.e2 + sums.gn * frame.n;
+  const Eigen::Vector3d moment = patch.center.cross(force) +
+                                 (sums.e1_g2 - sums.e2_g1) * frame.n -
+                                 sums.e1_gn * frame.e2 + sums.e2_gn * frame.e1;
+  const Eigen::Vector3d force_in_cam = pose.r * force;
+  SegmentGradient gradient;
+  gradient.pose << pose.r * moment + pose.t.cross(force_in_cam), force_in_cam;
+  gradient.plane.head<3>() =
+      -(sums.gn * (patch.center - patch.anchor) + sums.e1_gn * frame.e1 +
+        sums.e2_gn * frame.e2 + 2 * sums.s_gn * frame.n + sums.s_g1 * frame.e1 +
+        sums.s_g2 * frame.e2);
+  gradient.plane[3] = -sums.gn;
+  return gradient;
+}
+
+PhotoViewSums SumView(const TextureProblem& problem,
+                      const TexelTile& tile,
+                      const TileSegment& segment,
+                      const TileSamples& samples,
+                      size_t offset,
+                      const Patch& patch,
+                      const PlaneFrame& frame,
+                      const FramePose& pose) {
+  const Eigen::Vector3d d = patch.center - pose.center;
+  const float ray[3] = {static_cast<float>(frame.e1.dot(d)),
+                        static_cast<float>(frame.e2.dot(d)),
+                        static_cast<float>(frame.n.dot(d))};
+  PhotoViewSums sums;
+  GetPhotoKernel().view_sums(
+      samples.intensity.data() + offset,
+      samples.g1.data() + offset,
+      samples.g2.data() + offset,
+      samples.weight.empty() ? nullptr : samples.weight.data() + offset,
+      patch.texels.data(),
+      problem.observations.texel.data() + segment.begin,
+      static_cast<uint32_t>(tile.texel_begin),
+      segment.end - segment.begin,
+      ray,
+      &sums);
+  return sums;
 }
 
 // Sum of the weights of one view's samples.
@@ -223,50 +265,60 @@ JointPass RunJointPass(const TextureProblem& problem,
     const PlaneFrame frame(state.planes.data() + kPlaneSize * tile.plane);
     const Eigen::Vector3f e1 = frame.e1.cast<float>();
     const Eigen::Vector3f e2 = frame.e2.cast<float>();
-    const Eigen::Vector3d center = TileCenter(tile, points);
-    const double seen = static_cast<double>(TexelsSeen(problem, tile));
-    for (size_t s = tile.segment_begin;
-         with_derivatives && s < tile.segment_end;
-         ++s) {
-      pass.views[s] =
-          ViewAt(center, frame, poses[problem.segments[s].keyframe]);
-    }
-    std::vector<Eigen::Vector3d> tensors(
-        with_derivatives ? tile.texel_end - tile.texel_begin : 0,
-        Eigen::Vector3d::Zero());
     TileSamples samples;
+    if (!with_derivatives) {
+      for (const PhotoChannel& channel : channels) {
+        SampleTile(
+            problem, channel.frames, points, tile, nullptr, nullptr, &samples);
+        squares[t] += channel_weight *
+                      SumLoss(problem, tile, samples, samples.mean.data());
+      }
+      counts[t] = samples.counts;
+      return;
+    }
+    Patch patch = MakePatch(problem, tile, points, frame);
+    const double seen = static_cast<double>(TexelsSeen(problem, tile));
+    for (size_t s = tile.segment_begin; s < tile.segment_end; ++s) {
+      pass.views[s] =
+          ViewAt(patch.center, frame, poses[problem.segments[s].keyframe]);
+    }
+    std::vector<Eigen::Vector3d> tensors(tile.texel_end - tile.texel_begin,
+                                         Eigen::Vector3d::Zero());
     for (const PhotoChannel& channel : channels) {
       SampleTile(problem,
                  channel.frames,
                  points,
                  tile,
-                 with_derivatives ? e1.data() : nullptr,
+                 e1.data(),
                  e2.data(),
                  &samples);
-      squares[t] +=
-          channel_weight * SumLoss(problem, tile, samples, samples.mean.data());
-      if (!with_derivatives) continue;
       AddTexelTensors(
           problem, tile, samples, own_share, channel_weight, &tensors);
+      for (size_t i = 0; i < patch.texels.size(); ++i) {
+        patch.texels[i].color = samples.mean[i];
+      }
+      double sum_of_squares = 0;
       for (size_t s = tile.segment_begin; s < tile.segment_end; ++s) {
         const TileSegment& segment = problem.segments[s];
         const size_t offset = samples.offset[s - tile.segment_begin];
         pass.views[s].share += static_cast<float>(
             channel_weight * WeightOf(segment, samples, offset) / seen);
-        const SegmentGradient gradient = GradientOf(problem,
-                                                    points,
-                                                    tile,
-                                                    segment,
-                                                    samples,
-                                                    offset,
-                                                    frame,
-                                                    poses[segment.keyframe]);
+        const FramePose& pose = poses[segment.keyframe];
+        const PhotoViewSums sums = SumView(
+            problem, tile, segment, samples, offset, patch, frame, pose);
+        const SegmentGradient gradient = GradientOf(sums, patch, frame, pose);
+        sum_of_squares += sums.squares;
         gradients[s].pose += channel_weight * gradient.pose;
         gradients[s].plane += channel_weight * gradient.plane;
       }
+      squares[t] +=
+          channel_weight *
+          (samples.weight.empty()
+               ? sum_of_squares
+               : SumLoss(problem, tile, samples, samples.mean.data()));
     }
     counts[t] = samples.counts;
-    if (!with_derivatives || tile.segment_begin == tile.segment_end) return;
+    if (tile.segment_begin == tile.segment_end) return;
     pass.tensors[t] = SumTensors(problem, points, tile, frame, tensors);
     for (size_t s = tile.segment_begin; s < tile.segment_end; ++s) {
       // All dropped or outliers: keeps the sum of shares above 0.

@@ -81,15 +81,14 @@ std::pair<int, int> SpanOf(const std::array<Vector2d, 4>& u,
     }
     if (row < a->y() || row > b->y()) continue;
     const double height = b->y() - a->y();
-    const double x =
-        height > 0 ? a->x() + (row - a->y()) / height * (b->x() - a->x())
-                   : a->x();
+    const double x = height > 0
+                         ? a->x() + (row - a->y()) / height * (b->x() - a->x())
+                         : a->x();
     left = std::min(left, x);
     right = std::max(right, height > 0 ? x : b->x());
   }
   return {static_cast<int>(std::ceil(std::clamp(left, 0.0, 1.0 * width))),
-          static_cast<int>(
-              std::floor(std::clamp(right, -1.0, width - 1.0)))};
+          static_cast<int>(std::floor(std::clamp(right, -1.0, width - 1.0)))};
 }
 
 void Fill(const Polygon& polygon,
@@ -133,8 +132,8 @@ std::vector<float> RasterizeDepth(const RayScene& scene,
   for (size_t i = 0; i < y.size(); ++i) {
     y[i] = rotation * scene.vertices()[i] + cam_from_world.translation;
   }
-  std::vector<float> buffer(
-      static_cast<size_t>(camera.width) * camera.height, 0.0f);
+  std::vector<float> buffer(static_cast<size_t>(camera.width) * camera.height,
+                            0.0f);
   InverseDepth inverse_z;
   for (const std::array<int, 3>& face : scene.faces()) {
     const std::array<Vector3d, 3> triangle = {

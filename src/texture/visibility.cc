@@ -66,8 +66,7 @@ FrameView::FrameView(const RgbdCalibration& calibration,
   if (options.test_occlusion || options.test_mesh_edges) {
     std::vector<float> depth_of_mesh =
         RasterizeDepth(scene, color_, color_cam_from_world);
-    const cv::Mat z(
-        color_.height, color_.width, CV_32F, depth_of_mesh.data());
+    const cv::Mat z(color_.height, color_.width, CV_32F, depth_of_mesh.data());
     if (options.test_mesh_edges) {
       mesh_edges_ = SurfaceEdgeMask(z,
                                     options.mesh_edge_jump_m,

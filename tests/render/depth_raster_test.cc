@@ -127,8 +127,8 @@ TEST(RasterizeDepth, FillsExactCornersAndNothingElse) {
 // Breaks when something behind the camera, or seen edge-on, is drawn.
 TEST(RasterizeDepth, NothingBehindOrEdgeOn) {
   TriMesh mesh;
-  mesh.vertices = {{-1, -1, -2}, {1, -1, -2}, {0, 1, -2},
-                   {0, 0, 1},    {0, 1, 2},   {0, -1, 2}};
+  mesh.vertices = {
+      {-1, -1, -2}, {1, -1, -2}, {0, 1, -2}, {0, 0, 1}, {0, 1, 2}, {0, -1, 2}};
   mesh.faces = {{0, 1, 2}, {3, 4, 5}};
   for (const float z : RasterizeDepth(RayScene(mesh), kCamera, Pose())) {
     EXPECT_EQ(z, 0);
