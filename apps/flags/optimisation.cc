@@ -25,7 +25,7 @@ DEFINE_string(joint,
               "eliminated, by Hessian); schur, inner (colours kept: the oracle "
               "on small problems)");
 DEFINE_string(linear_solver,
-              "cholesky",
+              "cgnr",
               "of joint solves with eliminated colours: cholesky or cgnr");
 DEFINE_int32(levels,
              PhotometricOptions().levels,

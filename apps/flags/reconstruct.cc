@@ -354,6 +354,8 @@ std::string ProfileFlags(const std::string& name) {
          "--merge_max_member_rms=0\n"
          "--merge_islands=false\n"
          "--plane_init=simplified\n"
+         "--max_observations=20000000\n"
+         "--levels=1\n"
          "--schedule=10x[C; Phi; T+F]\n"
          "--stop_decrease=0\n"
          "--smoothing=0\n"

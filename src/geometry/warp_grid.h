@@ -46,17 +46,20 @@ struct WarpLattice {
   }
 
   // F(u) for the field f: NumVertices() pairs (f_x, f_y), row-major.
-  Eigen::Vector2d Apply(const double* f, const Eigen::Vector2d& u) const {
-    const WarpCell c = Locate(u.x(), u.y());
-    const double* f00 = f + 2 * VertexIndex(c.a, c.b);
-    const double* f10 = f00 + 2;
-    const double* f01 = f00 + 2 * columns;
-    const double* f11 = f01 + 2;
-    const double w00 = (1 - c.alpha) * (1 - c.beta),
-                 w10 = c.alpha * (1 - c.beta);
-    const double w01 = (1 - c.alpha) * c.beta, w11 = c.alpha * c.beta;
-    return {u.x() + w00 * f00[0] + w10 * f10[0] + w01 * f01[0] + w11 * f11[0],
-            u.y() + w00 * f00[1] + w10 * f10[1] + w01 * f01[1] + w11 * f11[1]};
+  template <typename T>
+  Eigen::Matrix<T, 2, 1> Apply(const T* f,
+                               const Eigen::Matrix<T, 2, 1>& u) const {
+    const T x = u.x() * T(columns - 1) / T(width - 1);
+    const T y = u.y() * T(rows - 1) / T(height - 1);
+    const int a = std::clamp(static_cast<int>(x), 0, columns - 2);
+    const int b = std::clamp(static_cast<int>(y), 0, rows - 2);
+    const T alpha = x - T(a), beta = y - T(b);
+    const T* f00 = f + 2 * VertexIndex(a, b);
+    const T* f01 = f00 + 2 * columns;
+    const T w00 = (1 - alpha) * (1 - beta), w10 = alpha * (1 - beta);
+    const T w01 = (1 - alpha) * beta, w11 = alpha * beta;
+    return {u.x() + w00 * f00[0] + w10 * f00[2] + w01 * f01[0] + w11 * f01[2],
+            u.y() + w00 * f00[1] + w10 * f00[3] + w01 * f01[1] + w11 * f01[3]};
   }
 };
 

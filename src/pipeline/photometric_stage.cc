@@ -48,6 +48,15 @@ std::string PhaseLine(const std::string& round,
   return line;
 }
 
+// On fewer pixels a texture says nothing.
+constexpr int kMinLevelPx = 24;
+
+int UsefulLevels(int levels, const Pinhole& camera) {
+  const int size = std::min(camera.width, camera.height);
+  while (levels > 1 && size >> (levels - 1) < kMinLevelPx) --levels;
+  return levels;
+}
+
 // Observations that the exposures are calibrated from, at most: they are means
 // over large areas.
 constexpr size_t kExposureSamples = 1000000;
@@ -243,7 +252,13 @@ PhotometricResult RunPhotometricStage(
                              visibility,
                              options);
   result.stride = options.stride > 0 ? options.stride : sampler.ChooseStride();
-  SampledTexels sampled = sampler.Sample(result.stride);
+  const int levels = UsefulLevels(options.levels, sequence.calibration().color);
+  std::vector<int> strides;
+  for (int level = 0; level < levels; ++level) {
+    strides.push_back(result.stride << level);
+  }
+  std::vector<SampledTexels> samples = sampler.Sample(strides);
+  SampledTexels& sampled = samples[0];
   if (options.exposure) {
     result.exposure =
         CalibrateExposures(sampled.texels,
@@ -306,11 +321,11 @@ PhotometricResult RunPhotometricStage(
   print(PhaseLine(
       "0", "start", result.initial, weights.lambda1, weights.lambda2, "", 0));
   result.trace.initial = result.initial;
-  for (int level = options.levels - 1; level > 0; --level) {
+  for (int level = levels - 1; level > 0; --level) {
     const KeyframeImages reduced =
         PyramidLevel(images, level, options.smoothing_sigma_px);
-    const int stride = result.stride << level;
-    Level coarse(inputs, reduced, level, stride, sampler.Sample(stride));
+    Level coarse(
+        inputs, reduced, level, strides[level], std::move(samples[level]));
     EnergyWeights coarse_weights = weights;
     coarse_weights.texel_weight *= 1 << (2 * level);
     coarse.AddTerms(options.terms, start, coarse_weights.texel_weight);

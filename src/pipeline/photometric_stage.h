@@ -28,18 +28,19 @@ struct PhotometricOptions {
   // 0 = the smallest stride that keeps the observations below
   // max_observations. Paper: 1.
   int stride = 0;
-  size_t max_observations = 20000000;
+  size_t max_observations = 5000000;
   double edge_margin_m = TexelOptions().edge_margin_m;  // texture/texels.h
   int tile_texels = 16;  // side of the square tiles (SortTexelsIntoTiles)
   double smoothing_sigma_px = 0.8;        // Gaussian on the luma; paper: none
   int warp_columns = 20, warp_rows = 16;  // control vertices (paper)
   // Coarse-to-fine: pyramid levels with images halved and the stride doubled a
   // level (method, Sec. 10.3 (i)). Coarse levels run the schedule without
-  // warps, on observations of their own; 1 = none.
-  int levels = 1;
-  // Joint solves of poses and colours first, without warp, then the warps: the
-  // measured best on real scans. The paper: 10x[C; Phi; T+F].
-  std::string schedule = "4x[Phi; C+T]; 5x[C; Phi; F]";
+  // warps, on observations of their own, and are left out where images would be
+  // smaller than 24 px; 1 = none.
+  int levels = 3;
+  // Joint solves of poses, planes and colours first, without warp, then the
+  // warps: the measured best (docs/ablations.md). The paper: 10x[C; Phi; T+F].
+  std::string schedule = "2x[C+Phi+T]; 3x[C; Phi; F]";
   // Bring the keyframes to a common exposure first (texture/exposure.h); off in
   // the paper.
   bool exposure = true;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "util/errors.h"
 
@@ -94,13 +95,14 @@ int TexelSampler::ChooseStride() const {
   }
   VisibilityOptions visibility = visibility_;
   visibility.min_views = 1;  // that the other keyframes see them is likely
-  const size_t seen = ComputeObservations(SampleGrid(kProbeStride).texels,
+  const SampledTexels probe = SampleGrid(kProbeStride);
+  const size_t seen = ComputeObservations({&probe.texels},
                                           planes_,
                                           scene_,
                                           sequence_,
                                           some_keyframes,
                                           some_poses,
-                                          visibility)
+                                          visibility)[0]
                           .size();
   // The count scales with 1 / stride^2.
   const double share = static_cast<double>(some_keyframes.size()) /
@@ -112,20 +114,28 @@ int TexelSampler::ChooseStride() const {
   return std::clamp(static_cast<int>(stride), 1, kMaxStride);
 }
 
-SampledTexels TexelSampler::Sample(int stride) const {
-  SampledTexels sampled = SampleGrid(stride);
-  sampled.observations = ComputeObservations(sampled.texels,
-                                             planes_,
-                                             scene_,
-                                             sequence_,
-                                             keyframes_,
-                                             cam_from_world_,
-                                             visibility_,
-                                             &sampled.counts);
-  CheckObserved(sampled.observations,
-                sampled.counts,
-                static_cast<int>(keyframes_.size()));
-  return sampled;
+std::vector<SampledTexels> TexelSampler::Sample(
+    const std::vector<int>& strides) const {
+  std::vector<SampledTexels> samples;
+  for (const int stride : strides) samples.push_back(SampleGrid(stride));
+  std::vector<const TexelSet*> texels;
+  for (const SampledTexels& sample : samples) texels.push_back(&sample.texels);
+  std::vector<VisibilityCounts> counts;
+  std::vector<Observations> observations = ComputeObservations(texels,
+                                                               planes_,
+                                                               scene_,
+                                                               sequence_,
+                                                               keyframes_,
+                                                               cam_from_world_,
+                                                               visibility_,
+                                                               &counts);
+  for (size_t i = 0; i < samples.size(); ++i) {
+    CheckObserved(
+        observations[i], counts[i], static_cast<int>(keyframes_.size()));
+    samples[i].observations = std::move(observations[i]);
+    samples[i].counts = counts[i];
+  }
+  return samples;
 }
 
 }  // namespace facet

@@ -40,9 +40,9 @@ class TexelSampler {
   // sample.
   int ChooseStride() const;
 
-  // Throws UnsolvableError, with the counts of the tests, if no keyframe sees
-  // any texel.
-  SampledTexels Sample(int stride) const;
+  // One sample a stride; together is cheaper. Throws UnsolvableError, with the
+  // counts of the tests, if no keyframe sees any texel of one.
+  std::vector<SampledTexels> Sample(const std::vector<int>& strides) const;
 
  private:
   SampledTexels SampleGrid(int stride) const;

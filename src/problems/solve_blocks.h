@@ -47,7 +47,7 @@ struct SolverConfig {
   // T+F: poses first, then warps, instead of both in one problem a keyframe.
   bool decouple_warps = false;
   JointMethod joint_method = JointMethod::kConsensus;
-  JointLinearSolver joint_linear_solver = JointLinearSolver::kCholesky;
+  JointLinearSolver joint_linear_solver = JointLinearSolver::kCgnr;
   // Joint solve: kappa and eta of problems/joint_pass.h, and the largest
   // trust-region radius, which with the pose prior holds soft gauge directions.
   int max_joint_iterations = 5;

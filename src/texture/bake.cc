@@ -56,7 +56,7 @@ class Baker {
         images_(images),
         poses_(color_cam_from_world),
         lattice_(lattice),
-        warps_(warps),
+        warps_(warps.begin(), warps.end()),
         visibility_(visibility),
         options_(options),
         camera_(sequence.calibration().color),
@@ -177,29 +177,24 @@ class Baker {
     }
   }
 
-  // w before the power e.
-  float Weight(float cosine,
-               float z,
-               float sharpness,
-               const Vector2f& u) const {
-    float weight = 1;
-    if (has_powers_) {
-      weight = std::exp2(
-          static_cast<float>(options_.angle_power) *
-              std::log2(std::max(cosine, 1e-3f)) -
-          static_cast<float>(options_.depth_power) * std::log2(z) +
-          static_cast<float>(options_.sharpness_power) * std::log2(sharpness));
-    }
-    if (options_.border_feather_px > 0) {
-      const float border =
-          std::min({u.x(),
-                    u.y(),
-                    static_cast<float>(camera_.width - 1) - u.x(),
-                    static_cast<float>(camera_.height - 1) - u.y()});
-      const float feather = static_cast<float>(options_.border_feather_px);
-      weight *= std::clamp(border / feather, 1e-3f, 1.0f);
-    }
-    return weight;
+  // w before the power e is the product of these two.
+  float Powers(float cosine, float z, float sharpness) const {
+    return std::exp2(static_cast<float>(options_.angle_power) *
+                         std::log2(std::max(cosine, 1e-3f)) -
+                     static_cast<float>(options_.depth_power) * std::log2(z) +
+                     static_cast<float>(options_.sharpness_power) *
+                         std::log2(sharpness));
+  }
+
+  float RampAt(const Vector2f& u) const {
+    if (!(options_.border_feather_px > 0)) return 1;
+    const float border =
+        std::min({u.x(),
+                  u.y(),
+                  static_cast<float>(camera_.width - 1) - u.x(),
+                  static_cast<float>(camera_.height - 1) - u.y()});
+    return std::clamp(
+        border / static_cast<float>(options_.border_feather_px), 1e-3f, 1.0f);
   }
 
   // All texels of a tile in one keyframe.
@@ -213,10 +208,16 @@ class Baker {
     const Vector3f center = pose.CenterInSource().cast<float>();
     const cv::Mat& rgb = images_.rgb[view.keyframe];
     const Exposure exposure = images_.ExposureOf(view.keyframe);
-    const double* warp =
+    const float* warp =
         warps_.empty()
             ? nullptr
             : warps_.data() + 2ul * lattice_.NumVertices() * view.keyframe;
+    const float fx = static_cast<float>(camera_.fx);
+    const float fy = static_cast<float>(camera_.fy);
+    const float cx = static_cast<float>(camera_.cx);
+    const float cy = static_cast<float>(camera_.cy);
+    const float right = static_cast<float>(camera_.width - 1);
+    const float bottom = static_cast<float>(camera_.height - 1);
     const Chart& chart = atlas_.charts[tile.chart];
     Vector3f normal = Normal(chart, tile.begin);
     for (uint32_t i = tile.begin; i < tile.end; ++i) {
@@ -228,23 +229,20 @@ class Baker {
       if (!(view.words[word] >> (bit % 64) & 1)) continue;
       const Vector3f y = rotation * texels_.q[i] + translation;
       if (!(y.z() > 0.01f)) continue;
-      Vector2f u(static_cast<float>(camera_.fx) * y.x() / y.z() +
-                     static_cast<float>(camera_.cx),
-                 static_cast<float>(camera_.fy) * y.y() / y.z() +
-                     static_cast<float>(camera_.cy));
-      if (warp) u = lattice_.Apply(warp, u.cast<double>()).cast<float>();
-      if (!(u.x() >= 0 && u.y() >= 0 &&
-            u.x() <= static_cast<float>(camera_.width - 1) &&
-            u.y() <= static_cast<float>(camera_.height - 1))) {
+      Vector2f u(fx * y.x() / y.z() + cx, fy * y.y() / y.z() + cy);
+      if (warp) u = lattice_.Apply(warp, u);
+      if (!(u.x() >= 0 && u.y() >= 0 && u.x() <= right && u.y() <= bottom)) {
         continue;
       }
-      if (chart.steep) normal = Normal(chart, i);
-      const float cosine = normal.dot((center - texels_.q[i]).normalized());
       sample.rgb = exposure.Corrected(options_.sampler == BakeSampler::kBilinear
                                           ? BilinearRgb(rgb, u.x(), u.y())
                                           : BicubicRgb(rgb, u.x(), u.y()));
-      sample.weight =
-          Weight(std::abs(cosine), y.z(), sharpness_[view.keyframe], u);
+      sample.weight = RampAt(u);
+      if (!has_powers_) continue;
+      if (chart.steep) normal = Normal(chart, i);
+      const float cosine = normal.dot((center - texels_.q[i]).normalized());
+      sample.weight *=
+          Powers(std::abs(cosine), y.z(), sharpness_[view.keyframe]);
     }
   }
 
@@ -305,7 +303,7 @@ class Baker {
   const KeyframeImages& images_;
   const std::vector<Pose>& poses_;
   const WarpLattice& lattice_;
-  const std::vector<double>& warps_;
+  const std::vector<float> warps_;
   const VisibilityOptions& visibility_;
   const BakeOptions& options_;
   const Pinhole camera_;

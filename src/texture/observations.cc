@@ -59,6 +59,85 @@ std::vector<TexelBlock> MakeBlocks(const TexelSet& texels,
   return blocks;
 }
 
+// A set of texels, prepared for all keyframes.
+class Candidates {
+ public:
+  Candidates(const TexelSet& texels, const std::vector<Plane>& planes)
+      : texels_(texels), planes_(planes) {
+    if (texels.size() > std::numeric_limits<uint32_t>::max()) {
+      throw UnsolvableError(
+          "more than 4 billion texels; raise the texel size or the stride");
+    }
+    points_ = PlanePoints(texels, planes);
+    blocks_ = MakeBlocks(texels, points_);
+  }
+
+  FrameResult SeenFrom(const FrameView& view) const {
+    FrameResult result;
+    for (const TexelBlock& block : blocks_) {
+      const Sight all = view.TestBall(block.ball);
+      if (all != Sight::kVisible) {
+        result.sights[static_cast<int>(all)] += block.end - block.begin;
+        continue;
+      }
+      const Vector3f normal =
+          planes_[texels_.plane[block.begin]].normal.cast<float>();
+      for (size_t i = block.begin; i < block.end; ++i) {
+        const Sight sight = view.Test(texels_.position[i], points_[i], normal);
+        ++result.sights[static_cast<int>(sight)];
+        if (sight == Sight::kVisible) {
+          result.texel.push_back(static_cast<uint32_t>(i));
+        }
+      }
+    }
+    return result;
+  }
+
+ private:
+  const TexelSet& texels_;
+  const std::vector<Plane>& planes_;
+  std::vector<Vector3f> points_;
+  std::vector<TexelBlock> blocks_;
+};
+
+// Empties `results`, one a keyframe.
+Observations Collect(size_t num_texels,
+                     int min_views,
+                     std::vector<FrameResult>* results,
+                     VisibilityCounts* counts) {
+  std::vector<uint16_t> views(num_texels, 0);
+  for (const FrameResult& result : *results) {
+    for (uint32_t i : result.texel) ++views[i];
+  }
+  Observations observations;
+  observations.begin.push_back(0);
+  for (FrameResult& result : *results) {
+    for (uint32_t i : result.texel) {
+      if (views[i] >= min_views) {
+        observations.texel.push_back(i);
+      } else {
+        ++counts->too_few_views;
+      }
+    }
+    observations.begin.push_back(observations.texel.size());
+    std::vector<uint32_t>().swap(result.texel);
+    const auto count = [&](Sight sight) {
+      return result.sights[static_cast<int>(sight)];
+    };
+    counts->behind_or_far += count(Sight::kBehindOrFar);
+    counts->outside_image += count(Sight::kOutsideImage);
+    counts->grazing += count(Sight::kGrazing);
+    counts->depth_missing += count(Sight::kDepthMissing);
+    counts->depth_edge += count(Sight::kDepthEdge);
+    counts->depth_disagrees += count(Sight::kDepthDisagrees);
+    counts->mesh_edge += count(Sight::kMeshEdge);
+    counts->occluded += count(Sight::kOccluded);
+  }
+  counts->candidates = num_texels * results->size();
+  counts->used = observations.size();
+  return observations;
+}
+
 }  // namespace
 
 Observations Thinned(const Observations& observations, size_t limit) {
@@ -77,23 +156,21 @@ Observations Thinned(const Observations& observations, size_t limit) {
   return thin;
 }
 
-Observations ComputeObservations(const TexelSet& texels,
-                                 const std::vector<Plane>& planes,
-                                 const RayScene& scene,
-                                 const RgbdSequence& sequence,
-                                 const std::vector<int>& keyframes,
-                                 const std::vector<Pose>& color_cam_from_world,
-                                 const VisibilityOptions& options,
-                                 VisibilityCounts* counts) {
-  if (texels.size() > std::numeric_limits<uint32_t>::max()) {
-    throw UnsolvableError(
-        "more than 4 billion texels; raise the texel size or the stride");
-  }
-  const std::vector<Vector3f> points = PlanePoints(texels, planes);
-  const std::vector<TexelBlock> blocks = MakeBlocks(texels, points);
+std::vector<Observations> ComputeObservations(
+    const std::vector<const TexelSet*>& texels,
+    const std::vector<Plane>& planes,
+    const RayScene& scene,
+    const RgbdSequence& sequence,
+    const std::vector<int>& keyframes,
+    const std::vector<Pose>& color_cam_from_world,
+    const VisibilityOptions& options,
+    std::vector<VisibilityCounts>* counts) {
+  std::vector<Candidates> candidates;
+  for (const TexelSet* set : texels) candidates.emplace_back(*set, planes);
   const bool needs_depth =
       options.test_sensor_depth || options.test_depth_edges;
-  std::vector<FrameResult> results(keyframes.size());
+  std::vector<std::vector<FrameResult>> results(
+      texels.size(), std::vector<FrameResult>(keyframes.size()));
   ParallelFor(0, keyframes.size(), [&](size_t k) {
     const FrameView view(
         sequence.calibration(),
@@ -101,57 +178,18 @@ Observations ComputeObservations(const TexelSet& texels,
         needs_depth ? sequence.LoadDepth(keyframes[k]) : cv::Mat(),
         scene,
         options);
-    FrameResult& result = results[k];
-    for (const TexelBlock& block : blocks) {
-      const Sight all = view.TestBall(block.ball);
-      if (all != Sight::kVisible) {
-        result.sights[static_cast<int>(all)] += block.end - block.begin;
-        continue;
-      }
-      const Vector3f normal =
-          planes[texels.plane[block.begin]].normal.cast<float>();
-      for (size_t i = block.begin; i < block.end; ++i) {
-        const Sight sight = view.Test(texels.position[i], points[i], normal);
-        ++result.sights[static_cast<int>(sight)];
-        if (sight == Sight::kVisible) {
-          result.texel.push_back(static_cast<uint32_t>(i));
-        }
-      }
+    for (size_t set = 0; set < texels.size(); ++set) {
+      results[set][k] = candidates[set].SeenFrom(view);
     }
   });
-
-  std::vector<uint16_t> views(texels.size(), 0);
-  for (const FrameResult& result : results) {
-    for (uint32_t i : result.texel) ++views[i];
+  std::vector<Observations> observations;
+  if (counts) counts->clear();
+  for (size_t set = 0; set < texels.size(); ++set) {
+    VisibilityCounts total;
+    observations.push_back(
+        Collect(texels[set]->size(), options.min_views, &results[set], &total));
+    if (counts) counts->push_back(total);
   }
-  Observations observations;
-  observations.begin.push_back(0);
-  VisibilityCounts total;
-  for (FrameResult& result : results) {
-    for (uint32_t i : result.texel) {
-      if (views[i] >= options.min_views) {
-        observations.texel.push_back(i);
-      } else {
-        ++total.too_few_views;
-      }
-    }
-    observations.begin.push_back(observations.texel.size());
-    std::vector<uint32_t>().swap(result.texel);
-    const auto count = [&](Sight sight) {
-      return result.sights[static_cast<int>(sight)];
-    };
-    total.behind_or_far += count(Sight::kBehindOrFar);
-    total.outside_image += count(Sight::kOutsideImage);
-    total.grazing += count(Sight::kGrazing);
-    total.depth_missing += count(Sight::kDepthMissing);
-    total.depth_edge += count(Sight::kDepthEdge);
-    total.depth_disagrees += count(Sight::kDepthDisagrees);
-    total.mesh_edge += count(Sight::kMeshEdge);
-    total.occluded += count(Sight::kOccluded);
-  }
-  total.candidates = texels.size() * keyframes.size();
-  total.used = observations.size();
-  if (counts) *counts = total;
   return observations;
 }
 

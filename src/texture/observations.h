@@ -62,18 +62,22 @@ struct VisibilityCounts {
 // Which keyframes see which texels. A texel is judged by its plane point q
 // (distance, image, angle, sensor depth) and by the ray to its mesh point p
 // (occlusion); see texture/visibility.h.
+//   texels      sets that are told apart: one Observations each. A keyframe is
+//               prepared once for all of them, which is most of the work.
 //   planes      by cluster id: n.x + w = 0
 //   scene       the simplified mesh the texels lie on
 //   keyframes   indices into sequence.frames()
 //   color_cam_from_world  one a keyframe
-// Depth images that do not decode throw InputError. `counts` may be null.
-Observations ComputeObservations(const TexelSet& texels,
-                                 const std::vector<Plane>& planes,
-                                 const RayScene& scene,
-                                 const RgbdSequence& sequence,
-                                 const std::vector<int>& keyframes,
-                                 const std::vector<Pose>& color_cam_from_world,
-                                 const VisibilityOptions& options,
-                                 VisibilityCounts* counts = nullptr);
+// Depth images that do not decode throw InputError. `counts` may be null, else
+// it gets one element a set.
+std::vector<Observations> ComputeObservations(
+    const std::vector<const TexelSet*>& texels,
+    const std::vector<Plane>& planes,
+    const RayScene& scene,
+    const RgbdSequence& sequence,
+    const std::vector<int>& keyframes,
+    const std::vector<Pose>& color_cam_from_world,
+    const VisibilityOptions& options,
+    std::vector<VisibilityCounts>* counts = nullptr);
 
 }  // namespace facet

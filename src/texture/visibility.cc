@@ -45,14 +45,18 @@ FrameView::FrameView(const RgbdCalibration& calibration,
                      const VisibilityOptions& options)
     : scene_(scene),
       options_(options),
-      color_(calibration.color),
-      depth_camera_(calibration.depth),
+      color_px_(calibration.color),
+      depth_px_(calibration.depth),
       rotation_(color_cam_from_world.RotationMatrix().cast<float>()),
       translation_(color_cam_from_world.translation.cast<float>()),
       center_(color_cam_from_world.CenterInSource().cast<float>()),
       min_cos_(
           static_cast<float>(std::cos(options.max_angle_deg * M_PI / 180.0))),
+      range_{static_cast<float>(options.min_depth_m),
+             static_cast<float>(options.max_depth_m)},
+      margin_(static_cast<float>(options.image_margin_px)),
       depth_(depth) {
+  const Pinhole& color = calibration.color;
   const Pose depth_cam_from_world =
       calibration.color_from_depth.Inverse() * color_cam_from_world;
   depth_rotation_ = depth_cam_from_world.RotationMatrix().cast<float>();
@@ -65,8 +69,8 @@ FrameView::FrameView(const RgbdCalibration& calibration,
   }
   if (options.test_occlusion || options.test_mesh_edges) {
     std::vector<float> depth_of_mesh =
-        RasterizeDepth(scene, color_, color_cam_from_world);
-    const cv::Mat z(color_.height, color_.width, CV_32F, depth_of_mesh.data());
+        RasterizeDepth(scene, color, color_cam_from_world);
+    const cv::Mat z(color.height, color.width, CV_32F, depth_of_mesh.data());
     if (options.test_mesh_edges) {
       mesh_edges_ = SurfaceEdgeMask(z,
                                     options.mesh_edge_jump_m,
@@ -78,9 +82,9 @@ FrameView::FrameView(const RgbdCalibration& calibration,
     cv::dilate(z, farthest_, cv::Mat::ones(3, 3, CV_8U));
   }
   const double margin = options.image_margin_px;
-  const auto left = color_.Unproject(margin, margin);
+  const auto left = color.Unproject(margin, margin);
   const auto right =
-      color_.Unproject(color_.width - 1 - margin, color_.height - 1 - margin);
+      color.Unproject(color.width - 1 - margin, color.height - 1 - margin);
   sides_[0] = Vector3f(1, 0, static_cast<float>(-left.x())).normalized();
   sides_[1] = Vector3f(0, 1, static_cast<float>(-left.y())).normalized();
   sides_[2] = Vector3f(-1, 0, static_cast<float>(right.x())).normalized();
@@ -89,8 +93,7 @@ FrameView::FrameView(const RgbdCalibration& calibration,
 
 Sight FrameView::TestBall(const Ball& ball) const {
   const Vector3f y = rotation_ * ball.center + translation_;
-  const float low = static_cast<float>(options_.min_depth_m);
-  const float high = static_cast<float>(options_.max_depth_m);
+  const float low = range_[0], high = range_[1];
   if (y.z() + ball.radius < low || y.z() - ball.radius > high) {
     return Sight::kBehindOrFar;
   }
@@ -106,14 +109,12 @@ Sight FrameView::TestBall(const Ball& ball) const {
 
 bool FrameView::IsInRangeAndImage(const Vector3f& q, Sight* refusal) const {
   const Vector3f y = rotation_ * q + translation_;
-  if (!(y.z() > static_cast<float>(options_.min_depth_m)) ||
-      y.z() > static_cast<float>(options_.max_depth_m)) {
+  if (!(y.z() > range_[0]) || y.z() > range_[1]) {
     *refusal = Sight::kBehindOrFar;
     return false;
   }
-  const Eigen::Vector2d u = color_.Project<double>(y.cast<double>());
   *refusal = Sight::kOutsideImage;
-  return color_.Contains(u, options_.image_margin_px);
+  return color_px_.Contains(color_px_.Project(y), margin_);
 }
 
 Sight FrameView::Test(const Vector3f& p,
@@ -147,17 +148,12 @@ FrameView::DepthReading FrameView::ReadDepth(const Vector3f& q) const {
   const Vector3f y = depth_rotation_ * q + depth_translation_;
   reading.z = y.z();
   if (!(y.z() > 0)) return reading;
-  const Eigen::Vector2d u = depth_camera_.Project<double>(y.cast<double>());
-  // Compared as doubles: far outside, an int would overflow.
-  if (!(u.x() > -0.5 && u.y() > -0.5 && u.x() < depth_camera_.width - 0.5 &&
-        u.y() < depth_camera_.height - 0.5)) {
-    return reading;
-  }
-  reading.column =
-      std::min(static_cast<int>(u.x() + 0.5), depth_camera_.width - 1);
-  reading.row =
-      std::min(static_cast<int>(u.y() + 0.5), depth_camera_.height - 1);
-  reading.measured = depth_.at<float>(reading.row, reading.column);
+  const Eigen::Vector2f u = depth_px_.Project(y);
+  // Compared as numbers: far outside, an int would overflow.
+  if (!depth_px_.Contains(u, -0.49f)) return reading;
+  reading.column = static_cast<int>(u.x() + 0.5f);
+  reading.row = static_cast<int>(u.y() + 0.5f);
+  reading.measured = depth_.ptr<float>(reading.row)[reading.column];
   return reading;
 }
 
@@ -167,7 +163,7 @@ Sight FrameView::TestSensorDepth(const DepthReading& reading) const {
     return Sight::kDepthMissing;
   }
   if (options_.test_depth_edges && reading.column >= 0 && !edges_.empty() &&
-      edges_.at<uint8_t>(reading.row, reading.column)) {
+      edges_.ptr<uint8_t>(reading.row)[reading.column]) {
     return Sight::kDepthEdge;
   }
   if (options_.test_sensor_depth && !missing) {
@@ -184,10 +180,10 @@ bool FrameView::IsAtMeshEdge(const Vector3f& p) const {
   if (mesh_edges_.empty()) return false;
   const Vector3f y = rotation_ * p + translation_;
   if (!(y.z() > 1e-3f)) return false;
-  const Eigen::Vector2d u = color_.Project<double>(y.cast<double>());
-  if (!color_.Contains(u, -0.49)) return false;
-  return mesh_edges_.at<uint8_t>(static_cast<int>(u.y() + 0.5),
-                                 static_cast<int>(u.x() + 0.5)) != 0;
+  const Eigen::Vector2f u = color_px_.Project(y);
+  if (!color_px_.Contains(u, -0.49f)) return false;
+  return mesh_edges_.ptr<uint8_t>(static_cast<int>(
+             u.y() + 0.5f))[static_cast<int>(u.x() + 0.5f)] != 0;
 }
 
 bool FrameView::IsOccluded(const Vector3f& p) const {
@@ -195,12 +191,12 @@ bool FrameView::IsOccluded(const Vector3f& p) const {
   if (!(y.z() > 1e-3f)) return true;
   const float limit =
       y.z() - static_cast<float>(options_.occlusion_tolerance_m);
-  const Eigen::Vector2d u = color_.Project<double>(y.cast<double>());
-  if (color_.Contains(u, -0.49)) {
-    const int col = static_cast<int>(u.x() + 0.5);
-    const int row = static_cast<int>(u.y() + 0.5);
-    if (nearest_.at<float>(row, col) >= limit) return false;
-    if (farthest_.at<float>(row, col) < limit) return true;
+  const Eigen::Vector2f u = color_px_.Project(y);
+  if (color_px_.Contains(u, -0.49f)) {
+    const int col = static_cast<int>(u.x() + 0.5f);
+    const int row = static_cast<int>(u.y() + 0.5f);
+    if (nearest_.ptr<float>(row)[col] >= limit) return false;
+    if (farthest_.ptr<float>(row)[col] < limit) return true;
   }
   // z grows linearly along the ray: hits with z < limit have t < limit / z.
   const Eigen::Vector3d origin = center_.cast<double>();

@@ -82,13 +82,39 @@ class FrameView {
   DepthReading ReadDepth(const Eigen::Vector3f& q) const;
   Sight TestSensorDepth(const DepthReading& reading) const;
 
+  // Pinhole in float: a pixel is found to 1e-3, for most of the time of a test
+  // goes into this.
+  struct PixelFinder {
+    float fx, fy, cx, cy, right, bottom;
+
+    explicit PixelFinder(const Pinhole& camera)
+        : fx(static_cast<float>(camera.fx)),
+          fy(static_cast<float>(camera.fy)),
+          cx(static_cast<float>(camera.cx)),
+          cy(static_cast<float>(camera.cy)),
+          right(static_cast<float>(camera.width - 1)),
+          bottom(static_cast<float>(camera.height - 1)) {}
+
+    Eigen::Vector2f Project(const Eigen::Vector3f& y) const {
+      const float inverse_z = 1 / y.z();
+      return {fx * y.x() * inverse_z + cx, fy * y.y() * inverse_z + cy};
+    }
+
+    bool Contains(const Eigen::Vector2f& u, float margin) const {
+      return u.x() >= margin && u.y() >= margin && u.x() <= right - margin &&
+             u.y() <= bottom - margin;
+    }
+  };
+
   const RayScene& scene_;
   VisibilityOptions options_;
-  Pinhole color_, depth_camera_;
+  PixelFinder color_px_, depth_px_;
   Eigen::Matrix3f rotation_, depth_rotation_;  // color / depth cam_from_world
   Eigen::Vector3f translation_, depth_translation_;
   Eigen::Vector3f center_;  // of the colour camera, world
   float min_cos_ = 0;
+  float range_[2] = {};  // of z [m]
+  float margin_ = 0;     // [px]
   cv::Mat depth_, edges_;
   cv::Mat mesh_edges_;
   cv::Mat nearest_, farthest_;  // 3 x 3 minimum and maximum of the z-buffer

@@ -299,6 +299,7 @@ TEST(CliAblate, SyntheticScansHaveTruth) {
                  {"--flagfile=" + Fixture("small.flags"),
                   "--output=" + dir / "abl",
                   "--vary=schedule=1x[C; T]",
+                  "--levels=1",
                   "--scans=" + dir / "scans.json",
                   "--synthetic_seeds=3",
                   "--noise_mm=4",

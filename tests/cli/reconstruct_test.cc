@@ -133,11 +133,11 @@ TEST(CliReconstruct, FilesAgree) {
   EXPECT_EQ(ReadPoses(run + "/poses.txt").size(), 24u);
   EXPECT_EQ(report["keyframes"], 12);
 
-  // A row for the start and one a phase: 2 x [C; Phi; T+F].
+  // A row for the start and one a phase: 2 x [C; Phi; T+F] on three levels.
   std::istringstream trace(ReadFile(run + "/trace.csv"));
   std::vector<std::string> rows;
   for (std::string row; std::getline(trace, row);) rows.push_back(row);
-  ASSERT_EQ(rows.size(), 1u + 1u + 6u);
+  ASSERT_EQ(rows.size(), 1u + 1u + 3u * 6u);
   for (const char* column : {"E_c",
                              "E_p",
                              "E_s",

@@ -57,14 +57,18 @@ class Scene {
   }
 
   Observations Compute(const VisibilityOptions& options) {
-    return ComputeObservations(texels,
-                               scene.Planes(),
-                               RayScene(scene.mesh),
-                               sequence,
-                               sequence.AllFrames(),
-                               sequence.AllPoses(),
-                               options,
-                               &counts);
+    std::vector<VisibilityCounts> of_sets;
+    const std::vector<Observations> observations =
+        ComputeObservations({&texels},
+                            scene.Planes(),
+                            RayScene(scene.mesh),
+                            sequence,
+                            sequence.AllFrames(),
+                            sequence.AllPoses(),
+                            options,
+                            &of_sets);
+    counts = of_sets.at(0);
+    return observations.at(0);
   }
 
   PlaneScene scene;
