@@ -14,6 +14,7 @@
 #include "texture/bake.h"
 #include "texture/glb_export.h"
 #include "texture/obj_export.h"
+#include "texture/seam_vertices.h"
 #include "util/atomic_file.h"
 #include "util/errors.h"
 
@@ -210,8 +211,9 @@ json ExportRun(const ReconstructOptions& options, const ExportInput& input) {
                                   input.photometric.cam_from_world,
                                   input.photometric.warps,
                                   &bake);
-  ExportObj(dir, model);
-  ExportGlb(dir + "/mesh.glb", model);
+  const std::vector<std::string> pages = EncodePages(model);
+  ExportObj(dir, model, pages);
+  ExportGlb(dir + "/mesh.glb", model, pages);
   WriteMasks(options, bake);
   if (options.previews) WritePreviews(options, input, model);
 

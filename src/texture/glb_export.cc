@@ -72,7 +72,7 @@ std::vector<Vector3f> SeamNormals(const TriMesh& mesh,
   return normals;
 }
 
-int AddMaterial(const cv::Mat* page,
+int AddMaterial(const std::string* png,
                 tinygltf::Model* model,
                 BufferWriter* writer) {
   tinygltf::Material material;
@@ -81,11 +81,10 @@ int AddMaterial(const cv::Mat* page,
   material.pbrMetallicRoughness.roughnessFactor = 1;
   material.extensions["KHR_materials_unlit"] =
       tinygltf::Value(tinygltf::Value::Object());
-  if (page) {
-    const auto png = EncodePng(*page);
+  if (png) {
     tinygltf::Image image;
     image.mimeType = "image/png";
-    image.bufferView = writer->AddView(png.data(), png.size(), 0);
+    image.bufferView = writer->AddView(png->data(), png->size(), 0);
     model->images.push_back(image);
     tinygltf::Texture texture;
     texture.source = static_cast<int>(model->images.size()) - 1;
@@ -173,7 +172,9 @@ tinygltf::Primitive AddPrimitive(const PageGeometry& page,
 
 }  // namespace
 
-void ExportGlb(const std::string& path, const TexturedMesh& model) {
+void ExportGlb(const std::string& path,
+               const TexturedMesh& model,
+               const std::vector<std::string>& pages) {
   const bool textured = !model.face_uv.empty();
   const SeamVertices seams = SplitAtSeams(model);
   const std::vector<Vector3f> normals = SeamNormals(model.mesh, seams);
@@ -191,13 +192,13 @@ void ExportGlb(const std::string& path, const TexturedMesh& model) {
   }
   tinygltf::Mesh mesh;
   mesh.name = "facet";
-  const size_t num_pages = textured ? model.pages.size() : 1;
+  const size_t num_pages = textured ? pages.size() : 1;
   for (size_t page = 0; page < num_pages; ++page) {
     const PageGeometry geometry =
         CollectPage(model, seams, normals, static_cast<int>(page));
     if (geometry.indices.empty()) continue;
     const int material =
-        AddMaterial(textured ? &model.pages[page] : nullptr, &gltf, &writer);
+        AddMaterial(textured ? &pages[page] : nullptr, &gltf, &writer);
     mesh.primitives.push_back(AddPrimitive(geometry, material, &gltf, &writer));
   }
   if (mesh.primitives.empty()) {

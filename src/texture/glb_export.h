@@ -5,6 +5,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "texture/textured_mesh.h"
 
@@ -17,6 +18,9 @@ namespace facet {
 // atomically. Without texture coordinates one primitive with bare geometry.
 // Throws InputError when the file cannot be written, UnsolvableError beyond 4
 // GB.
-void ExportGlb(const std::string& path, const TexturedMesh& model);
+// `pages` as from EncodePages (texture/seam_vertices.h).
+void ExportGlb(const std::string& path,
+               const TexturedMesh& model,
+               const std::vector<std::string>& pages);
 
 }  // namespace facet

@@ -8,7 +8,6 @@
 
 #include "texture/seam_vertices.h"
 #include "util/atomic_file.h"
-#include "util/parallel_for.h"
 
 namespace facet {
 namespace {
@@ -78,13 +77,13 @@ std::string ObjText(const TexturedMesh& model) {
 
 }  // namespace
 
-void ExportObj(const std::string& dir, const TexturedMesh& model) {
+void ExportObj(const std::string& dir,
+               const TexturedMesh& model,
+               const std::vector<std::string>& pages) {
   if (!model.face_uv.empty()) {
-    ParallelFor(0, model.pages.size(), [&](size_t page) {
-      const auto png = EncodePng(model.pages[page]);
-      WriteFileAtomically(dir + "/" + TextureName(page),
-                          std::string(png.begin(), png.end()));
-    });
+    for (size_t page = 0; page < pages.size(); ++page) {
+      WriteFileAtomically(dir + "/" + TextureName(page), pages[page]);
+    }
     WriteFileAtomically(dir + "/mesh.mtl", MtlText(model.pages.size()));
   }
   WriteFileAtomically(dir + "/mesh.obj", ObjText(model));

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "texture/textured_mesh.h"
 
@@ -15,6 +16,9 @@ namespace facet {
 // page (usemtl) in ascending order, names are relative. Without texture
 // coordinates only mesh.obj with bare geometry. Throws InputError when `dir`
 // cannot be written.
-void ExportObj(const std::string& dir, const TexturedMesh& model);
+// `pages` as from EncodePages (texture/seam_vertices.h).
+void ExportObj(const std::string& dir,
+               const TexturedMesh& model,
+               const std::vector<std::string>& pages);
 
 }  // namespace facet

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "util/errors.h"
+#include "util/parallel_for.h"
 
 namespace facet {
 
@@ -51,7 +52,9 @@ SeamVertices SplitAtSeams(const TexturedMesh& model) {
   return result;
 }
 
-std::vector<unsigned char> EncodePng(const cv::Mat& rgb) {
+namespace {
+
+std::string EncodePng(const cv::Mat& rgb) {
   cv::Mat bgr;
   cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
   std::vector<unsigned char> bytes;
@@ -60,7 +63,17 @@ std::vector<unsigned char> EncodePng(const cv::Mat& rgb) {
                           " x " + std::to_string(rgb.rows) +
                           " px cannot be encoded as PNG; use smaller pages");
   }
-  return bytes;
+  return {bytes.begin(), bytes.end()};
+}
+
+}  // namespace
+
+std::vector<std::string> EncodePages(const TexturedMesh& model) {
+  std::vector<std::string> pages(model.pages.size());
+  ParallelFor(0, pages.size(), [&](size_t page) {
+    pages[page] = EncodePng(model.pages[page]);
+  });
+  return pages;
 }
 
 }  // namespace facet

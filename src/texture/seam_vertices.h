@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <vector>
 
 #include "texture/textured_mesh.h"
@@ -27,7 +28,7 @@ struct SeamVertices {
 // texture coordinates all are (0, 0) on page 0.
 SeamVertices SplitAtSeams(const TexturedMesh& model);
 
-// A page (CV_8UC3, RGB) as a PNG file's bytes; fast compression.
-std::vector<unsigned char> EncodePng(const cv::Mat& rgb);
+// The pages (CV_8UC3, RGB) as bytes of PNG files; fast compression.
+std::vector<std::string> EncodePages(const TexturedMesh& model);
 
 }  // namespace facet

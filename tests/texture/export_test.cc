@@ -91,7 +91,7 @@ TEST(ObjExport, ReadsBackAsWritten) {
   const TempDir dir;
   const TexturedMesh model = CornerModel();
   ASSERT_EQ(model.pages.size(), 2u);
-  ExportObj(dir.path(), model);
+  ExportObj(dir.path(), model, EncodePages(model));
   std::vector<Vector3d> v;
   std::vector<Vector2d> vt;
   std::vector<std::array<std::array<int, 2>, 3>> faces;
@@ -157,7 +157,7 @@ TEST(ObjExport, BareGeometryHasNoMaterial) {
   model.face_uv.clear();
   model.face_page.clear();
   model.pages.clear();
-  ExportObj(dir.path(), model);
+  ExportObj(dir.path(), model, EncodePages(model));
   EXPECT_EQ(ReadFile(dir / "mesh.obj").find("mtl"), std::string::npos);
   EXPECT_FALSE(std::ifstream(dir / "mesh.mtl").good());
 }
@@ -167,7 +167,7 @@ TEST(GlbExport, PassesTheFormatsRules) {
   // min/max exact, indices in range, geometry, pictures and extension there.
   const TempDir dir;
   const TexturedMesh model = CornerModel();
-  ExportGlb(dir / "mesh.glb", model);
+  ExportGlb(dir / "mesh.glb", model, EncodePages(model));
   const std::string bytes = ReadFile(dir / "mesh.glb");
   uint32_t header[5];
   ASSERT_GT(bytes.size(), sizeof(header));
@@ -265,9 +265,13 @@ TEST(GlbExport, PassesTheFormatsRules) {
 
 TEST(GlbExport, RefusesWhatItCannotWrite) {
   const TempDir dir;
-  EXPECT_THROW(ExportGlb(dir / "mesh.glb", TexturedMesh()), UnsolvableError);
+  EXPECT_THROW(ExportGlb(dir / "mesh.glb", TexturedMesh(), {}),
+               UnsolvableError);
   std::ofstream(dir / "file") << "x";
-  EXPECT_THROW(ExportGlb(dir / "file/mesh.glb", CornerModel()), InputError);
+  EXPECT_THROW(
+      ExportGlb(
+          dir / "file/mesh.glb", CornerModel(), EncodePages(CornerModel())),
+      InputError);
   EXPECT_FALSE(std::ifstream(dir / "mesh.glb").good());
 }
 
