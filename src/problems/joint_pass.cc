@@ -162,33 +162,6 @@ SegmentGradient GradientOf(const PhotoViewSums& sums,
   return gradient;
 }
 
-PhotoViewSums SumView(const TextureProblem& problem,
-                      const TexelTile& tile,
-                      const TileSegment& segment,
-                      const TileSamples& samples,
-                      size_t offset,
-                      const Patch& patch,
-                      const PlaneFrame& frame,
-                      const FramePose& pose) {
-  const Eigen::Vector3d d = patch.center - pose.center;
-  const float ray[3] = {static_cast<float>(frame.e1.dot(d)),
-                        static_cast<float>(frame.e2.dot(d)),
-                        static_cast<float>(frame.n.dot(d))};
-  PhotoViewSums sums;
-  GetPhotoKernel().view_sums(
-      samples.intensity.data() + offset,
-      samples.g1.data() + offset,
-      samples.g2.data() + offset,
-      samples.weight.empty() ? nullptr : samples.weight.data() + offset,
-      patch.texels.data(),
-      problem.observations.texel.data() + segment.begin,
-      static_cast<uint32_t>(tile.texel_begin),
-      segment.end - segment.begin,
-      ray,
-      &sums);
-  return sums;
-}
-
 // Sum of the weights of one view's samples.
 double WeightOf(const TileSegment& segment,
                 const TileSamples& samples,
@@ -207,6 +180,182 @@ size_t TexelsSeen(const TextureProblem& problem, const TexelTile& tile) {
   }
   return seen;
 }
+
+// The pass over the tiles, each writing to places of its own.
+class TileWorker {
+ public:
+  TileWorker(const TextureProblem& problem,
+             const ReconState& state,
+             double own_share,
+             JointPass* pass)
+      : problem_(problem),
+        state_(state),
+        channels_(MakePhotoChannels(problem, state, PointsAt::kPlane)),
+        points_(channels_[0].points),
+        channel_weight_(1.0 / problem.NumChannels()),
+        poses_(MakeFramePoses(problem, state)),
+        own_share_(own_share),
+        pass_(pass),
+        squares_(problem.tiles.size(), 0.0),
+        counts_(problem.tiles.size()) {}
+
+  void FindCosts() {
+    ParallelFor(0, problem_.tiles.size(), [this](size_t t) {
+      const TexelTile& tile = problem_.tiles[t];
+      TileSamples samples;
+      for (const PhotoChannel& channel : channels_) {
+        Sample(channel, tile, nullptr, &samples);
+        squares_[t] += channel_weight_ *
+                       SumLoss(problem_, tile, samples, samples.mean.data());
+      }
+      counts_[t] = samples.counts;
+    });
+    SumCosts();
+  }
+
+  void FindDerivatives() {
+    for (int j = 0; j < problem_.NumPlanes(); ++j) {
+      const PlaneFrame frame = FrameOf(j);
+      pass_->plane_axes.push_back(Eigen::Matrix<double, 4, 3>::Zero());
+      pass_->plane_axes.back().col(0).head<3>() = frame.e1;
+      pass_->plane_axes.back().col(1).head<3>() = frame.e2;
+      pass_->plane_axes.back()(3, 2) = 1;
+    }
+    pass_->views.resize(problem_.segments.size());
+    pass_->tensors.resize(problem_.tiles.size());
+    gradients_.resize(problem_.segments.size());
+    ParallelFor(0, problem_.tiles.size(), [this](size_t t) { PassTile(t); });
+    SumCosts();
+    SumGradients();
+  }
+
+ private:
+  PlaneFrame FrameOf(int plane) const {
+    return PlaneFrame(state_.planes.data() + kPlaneSize * plane);
+  }
+
+  void Sample(const PhotoChannel& channel,
+              const TexelTile& tile,
+              const PlaneFrame* gradient_axes,
+              TileSamples* samples) const {
+    Eigen::Vector3f e1, e2;
+    if (gradient_axes) {
+      e1 = gradient_axes->e1.cast<float>();
+      e2 = gradient_axes->e2.cast<float>();
+    }
+    SampleTile(problem_,
+               channel.frames,
+               points_,
+               tile,
+               gradient_axes ? e1.data() : nullptr,
+               gradient_axes ? e2.data() : nullptr,
+               samples);
+  }
+
+  void PassTile(size_t t) {
+    const TexelTile& tile = problem_.tiles[t];
+    const PlaneFrame frame = FrameOf(tile.plane);
+    Patch patch = MakePatch(problem_, tile, points_, frame);
+    for (size_t s = tile.segment_begin; s < tile.segment_end; ++s) {
+      pass_->views[s] =
+          ViewAt(patch.center, frame, poses_[problem_.segments[s].keyframe]);
+    }
+    const double seen = static_cast<double>(TexelsSeen(problem_, tile));
+    std::vector<Eigen::Vector3d> tensors(patch.texels.size(),
+                                         Eigen::Vector3d::Zero());
+    TileSamples samples;
+    for (const PhotoChannel& channel : channels_) {
+      Sample(channel, tile, &frame, &samples);
+      AddTexelTensors(
+          problem_, tile, samples, own_share_, channel_weight_, &tensors);
+      for (size_t i = 0; i < patch.texels.size(); ++i) {
+        patch.texels[i].color = samples.mean[i];
+      }
+      double squares = 0;
+      for (size_t s = tile.segment_begin; s < tile.segment_end; ++s) {
+        squares += PassView(tile, s, seen, samples, patch, frame);
+      }
+      if (!samples.weight.empty()) {
+        squares = SumLoss(problem_, tile, samples, samples.mean.data());
+      }
+      squares_[t] += channel_weight_ * squares;
+    }
+    counts_[t] = samples.counts;
+    if (tile.segment_begin == tile.segment_end) return;
+    pass_->tensors[t] = SumTensors(problem_, points_, tile, frame, tensors);
+    for (size_t s = tile.segment_begin; s < tile.segment_end; ++s) {
+      // All dropped or outliers: keeps the sum of shares above 0.
+      pass_->views[s].share = std::max(pass_->views[s].share, 1e-6f);
+    }
+  }
+
+  // Share and gradient of one view. Returns its sum of squares.
+  double PassView(const TexelTile& tile,
+                  size_t s,
+                  double seen,
+                  const TileSamples& samples,
+                  const Patch& patch,
+                  const PlaneFrame& frame) {
+    const TileSegment& segment = problem_.segments[s];
+    const size_t offset = samples.offset[s - tile.segment_begin];
+    pass_->views[s].share += static_cast<float>(
+        channel_weight_ * WeightOf(segment, samples, offset) / seen);
+    const FramePose& pose = poses_[segment.keyframe];
+    const Eigen::Vector3d d = patch.center - pose.center;
+    const float ray[3] = {static_cast<float>(frame.e1.dot(d)),
+                          static_cast<float>(frame.e2.dot(d)),
+                          static_cast<float>(frame.n.dot(d))};
+    PhotoViewSums sums;
+    GetPhotoKernel().view_sums(
+        samples.intensity.data() + offset,
+        samples.g1.data() + offset,
+        samples.g2.data() + offset,
+        samples.weight.empty() ? nullptr : samples.weight.data() + offset,
+        patch.texels.data(),
+        problem_.observations.texel.data() + segment.begin,
+        static_cast<uint32_t>(tile.texel_begin),
+        segment.end - segment.begin,
+        ray,
+        &sums);
+    const SegmentGradient gradient = GradientOf(sums, patch, frame, pose);
+    gradients_[s].pose += channel_weight_ * gradient.pose;
+    gradients_[s].plane += channel_weight_ * gradient.plane;
+    return sums.squares;
+  }
+
+  void SumCosts() {
+    pass_->plane_squares.assign(problem_.NumPlanes(), 0.0);
+    for (size_t t = 0; t < squares_.size(); ++t) {
+      pass_->squares += squares_[t];
+      pass_->plane_squares[problem_.tiles[t].plane] += squares_[t];
+      pass_->counts += counts_[t];
+    }
+  }
+
+  void SumGradients() {
+    pass_->pose_gradient.assign(poses_.size(), Vector6d::Zero());
+    pass_->plane_gradient.assign(problem_.NumPlanes(), Eigen::Vector4d::Zero());
+    for (const TexelTile& tile : problem_.tiles) {
+      for (size_t s = tile.segment_begin; s < tile.segment_end; ++s) {
+        pass_->pose_gradient[problem_.segments[s].keyframe] +=
+            gradients_[s].pose;
+        pass_->plane_gradient[tile.plane] += gradients_[s].plane;
+      }
+    }
+  }
+
+  const TextureProblem& problem_;
+  const ReconState& state_;
+  const std::vector<PhotoChannel> channels_;
+  const std::vector<PhotoTexel>& points_;
+  const double channel_weight_;
+  const std::vector<FramePose> poses_;
+  const double own_share_;
+  JointPass* pass_;
+  std::vector<double> squares_;      // by tile
+  std::vector<PhotoCounts> counts_;  // by tile
+  std::vector<SegmentGradient> gradients_;
+};
 
 }  // namespace
 
@@ -238,107 +387,12 @@ JointPass RunJointPass(const TextureProblem& problem,
                        const ReconState& state,
                        bool with_derivatives,
                        double own_share) {
-  const std::vector<PhotoChannel> channels =
-      MakePhotoChannels(problem, state, PointsAt::kPlane);
-  const std::vector<PhotoTexel>& points = channels[0].points;
-  const double channel_weight = 1.0 / problem.NumChannels();
-  const std::vector<FramePose> poses = MakeFramePoses(problem, state);
-  const size_t num_tiles = problem.tiles.size();
   JointPass pass;
-  std::vector<double> squares(num_tiles, 0.0);
-  std::vector<PhotoCounts> counts(num_tiles);
-  std::vector<SegmentGradient> gradients;
+  TileWorker worker(problem, state, own_share, &pass);
   if (with_derivatives) {
-    pass.views.resize(problem.segments.size());
-    pass.tensors.resize(num_tiles);
-    gradients.resize(problem.segments.size());
-    for (int j = 0; j < problem.NumPlanes(); ++j) {
-      const PlaneFrame frame(state.planes.data() + kPlaneSize * j);
-      pass.plane_axes.push_back(Eigen::Matrix<double, 4, 3>::Zero());
-      pass.plane_axes.back().col(0).head<3>() = frame.e1;
-      pass.plane_axes.back().col(1).head<3>() = frame.e2;
-      pass.plane_axes.back()(3, 2) = 1;
-    }
-  }
-  ParallelFor(0, num_tiles, [&](size_t t) {
-    const TexelTile& tile = problem.tiles[t];
-    const PlaneFrame frame(state.planes.data() + kPlaneSize * tile.plane);
-    const Eigen::Vector3f e1 = frame.e1.cast<float>();
-    const Eigen::Vector3f e2 = frame.e2.cast<float>();
-    TileSamples samples;
-    if (!with_derivatives) {
-      for (const PhotoChannel& channel : channels) {
-        SampleTile(
-            problem, channel.frames, points, tile, nullptr, nullptr, &samples);
-        squares[t] += channel_weight *
-                      SumLoss(problem, tile, samples, samples.mean.data());
-      }
-      counts[t] = samples.counts;
-      return;
-    }
-    Patch patch = MakePatch(problem, tile, points, frame);
-    const double seen = static_cast<double>(TexelsSeen(problem, tile));
-    for (size_t s = tile.segment_begin; s < tile.segment_end; ++s) {
-      pass.views[s] =
-          ViewAt(patch.center, frame, poses[problem.segments[s].keyframe]);
-    }
-    std::vector<Eigen::Vector3d> tensors(tile.texel_end - tile.texel_begin,
-                                         Eigen::Vector3d::Zero());
-    for (const PhotoChannel& channel : channels) {
-      SampleTile(problem,
-                 channel.frames,
-                 points,
-                 tile,
-                 e1.data(),
-                 e2.data(),
-                 &samples);
-      AddTexelTensors(
-          problem, tile, samples, own_share, channel_weight, &tensors);
-      for (size_t i = 0; i < patch.texels.size(); ++i) {
-        patch.texels[i].color = samples.mean[i];
-      }
-      double sum_of_squares = 0;
-      for (size_t s = tile.segment_begin; s < tile.segment_end; ++s) {
-        const TileSegment& segment = problem.segments[s];
-        const size_t offset = samples.offset[s - tile.segment_begin];
-        pass.views[s].share += static_cast<float>(
-            channel_weight * WeightOf(segment, samples, offset) / seen);
-        const FramePose& pose = poses[segment.keyframe];
-        const PhotoViewSums sums = SumView(
-            problem, tile, segment, samples, offset, patch, frame, pose);
-        const SegmentGradient gradient = GradientOf(sums, patch, frame, pose);
-        sum_of_squares += sums.squares;
-        gradients[s].pose += channel_weight * gradient.pose;
-        gradients[s].plane += channel_weight * gradient.plane;
-      }
-      squares[t] +=
-          channel_weight *
-          (samples.weight.empty()
-               ? sum_of_squares
-               : SumLoss(problem, tile, samples, samples.mean.data()));
-    }
-    counts[t] = samples.counts;
-    if (tile.segment_begin == tile.segment_end) return;
-    pass.tensors[t] = SumTensors(problem, points, tile, frame, tensors);
-    for (size_t s = tile.segment_begin; s < tile.segment_end; ++s) {
-      // All dropped or outliers: keeps the sum of shares above 0.
-      pass.views[s].share = std::max(pass.views[s].share, 1e-6f);
-    }
-  });
-  pass.plane_squares.assign(problem.NumPlanes(), 0.0);
-  for (size_t t = 0; t < num_tiles; ++t) {
-    pass.squares += squares[t];
-    pass.plane_squares[problem.tiles[t].plane] += squares[t];
-    pass.counts += counts[t];
-  }
-  if (!with_derivatives) return pass;
-  pass.pose_gradient.assign(poses.size(), Vector6d::Zero());
-  pass.plane_gradient.assign(problem.NumPlanes(), Eigen::Vector4d::Zero());
-  for (const TexelTile& tile : problem.tiles) {
-    for (size_t s = tile.segment_begin; s < tile.segment_end; ++s) {
-      pass.pose_gradient[problem.segments[s].keyframe] += gradients[s].pose;
-      pass.plane_gradient[tile.plane] += gradients[s].plane;
-    }
+    worker.FindDerivatives();
+  } else {
+    worker.FindCosts();
   }
   return pass;
 }

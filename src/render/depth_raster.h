@@ -11,11 +11,11 @@
 namespace facet {
 
 // z of the scene at the pixel centres of a camera [m], row-major, 0 where there
-// is nothing nearer than infinity and farther than 1 mm: the depth of
-// RenderDepth, in a small part of its time, by filling every triangle. On one
-// thread. Between two triangles that share an edge no pixel is left out. Agrees
-// with a ray to 1e-5 of the depth, but for pixel centres on an outline, which
-// may fall to either side.
+// is nothing: the depth of RenderDepth, in a small part of its time, by filling
+// every triangle. What is nearer than 1 mm is cut off. On one thread. Between
+// two triangles that share an edge no pixel is left out. Agrees with a ray to
+// 1e-5 of the depth, but for pixel centres on an outline, which may fall to
+// either side.
 std::vector<float> RasterizeDepth(const RayScene& scene,
                                   const Pinhole& camera,
                                   const Pose& cam_from_world);
