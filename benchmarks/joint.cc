@@ -59,8 +59,8 @@ void MeasureMethods(const BenchSize& size, int repetitions) {
     MeasureMethod(bench, JointMethodName(method), config, repetitions);
   }
   config.joint_method = JointMethod::kConsensus;
-  config.joint_linear_solver = JointLinearSolver::kCgnr;
-  MeasureMethod(bench, "consensus (CGNR)", config, repetitions);
+  config.joint_linear_solver = JointLinearSolver::kCholesky;
+  MeasureMethod(bench, "consensus (Cholesky)", config, repetitions);
 }
 
 }  // namespace
