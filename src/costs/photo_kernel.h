@@ -63,7 +63,7 @@ struct PhotoPatchTexel {
 // Sums over samples of a view, w = rho' (1 without a robust loss), gn as in
 // problems/joint_rows.h.
 struct PhotoViewSums {
-  float squares;       // r^2
+  float squares;       // (w r)^2: the cost if all w are 1
   float g1, g2, gn;    // w r g
   float e1_g2, e1_gn;  // w r g, times the texel's coordinate
   float e2_g1, e2_gn;
