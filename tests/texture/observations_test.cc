@@ -371,5 +371,17 @@ TEST(DepthMoments, VanishOnTheTruePlanesOfTheRightCamera) {
   }
 }
 
+// Breaks if texels lose some of their views but not all, or if the
+// keyframes' ranges do not follow.
+TEST(Observations, ThinningKeepsTexelsWhole) {
+  Observations all;
+  all.begin = {0, 10, 16};
+  all.texel = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 0, 2, 3, 4, 6, 9};
+  const Observations thin = Thinned(all, 6);  // every third
+  EXPECT_EQ(thin.begin, (std::vector<size_t>{0, 4, 8}));
+  EXPECT_EQ(thin.texel, (std::vector<uint32_t>{0, 3, 6, 9, 0, 3, 6, 9}));
+  EXPECT_EQ(Thinned(all, 16).texel, all.texel);
+}
+
 }  // namespace
 }  // namespace facet
