@@ -16,7 +16,7 @@ namespace {
 
 // The image gradient, about 0.002 per px, is a difference of intensities of
 // about 0.5 in float: 6e-8 / 0.002 = 3e-5 of it is rounding. Pixel positions
-// add less (1e-5 px), the diagonal shift of the compression 4e-6. Entries are
+// add less (1e-5 px), the diagonal shift of the compression 5e-7. Entries are
 // compared relative to |J_i||J_j|.
 constexpr double kFloatTolerance = 1e-4;
 // With and without Jacobians the same float residuals are summed in another
