@@ -193,6 +193,9 @@ DEFINE_double(bake_local_exposure,
               "final colours: 0 = one exposure everywhere, 1 = that of the "
               "images that see a texel");
 DEFINE_string(bake_sampler, "bilinear", "final colours: bilinear or bicubic");
+DEFINE_int32(bake_visibility_px,
+             2,
+             "final colours: one visibility test for a square of so many texels");
 
 namespace facet {
 namespace {
@@ -248,6 +251,7 @@ void CheckNumbers() {
       {"bake_best_view_power", 0, 1000, true},
       {"bake_robust_luma", 0, kMax},
       {"bake_local_exposure", 0, 1},
+      {"bake_visibility_px", 1, facet::kBakeTilePx},
   });
 }
 
@@ -302,6 +306,7 @@ void TextureOptions(ReconstructOptions* o) {
   b.best_view_power = FLAGS_bake_best_view_power;
   b.robust_luma = FLAGS_bake_robust_luma;
   b.local_exposure = FLAGS_bake_local_exposure;
+  b.visibility_px = FLAGS_bake_visibility_px;
   b.sampler = Choose("bake_sampler", FLAGS_bake_sampler) == 0
                   ? BakeSampler::kBilinear
                   : BakeSampler::kBicubic;

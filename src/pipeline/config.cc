@@ -136,6 +136,7 @@ json ExportSettings(const ReconstructOptions& o) {
           {"robust_luma", o.bake.robust_luma},
           {"local_exposure", o.bake.local_exposure},
           {"sampler", static_cast<int>(o.bake.sampler)},
+          {"visibility_px", o.bake.visibility_px},
           {"inpaint", o.bake.inpaint}};
 }
 

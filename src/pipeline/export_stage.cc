@@ -99,34 +99,6 @@ TexturedMesh MakeModel(const ExportInput& input,
   return model;
 }
 
-TexturedMesh Bake(const ReconstructOptions& options,
-                  const ExportInput& input,
-                  const KeyframeImages& images,
-                  const TriMesh& mesh,
-                  const std::vector<Plane>& planes,
-                  const std::vector<Pose>& cam_from_world,
-                  const std::vector<double>& warps,
-                  BakeReport* report,
-                  const std::vector<char>& only_faces = {}) {
-  const RayScene scene(mesh);
-  return MakeModel(input,
-                   mesh,
-                   BakeTexture(mesh,
-                               planes,
-                               input.atlas,
-                               scene,
-                               input.sequence,
-                               input.keyframes,
-                               images,
-                               cam_from_world,
-                               input.photometric.lattice,
-                               warps,
-                               options.visibility,
-                               options.bake,
-                               report,
-                               only_faces));
-}
-
 void WriteMasks(const ReconstructOptions& options, const BakeReport& report) {
   const auto name = [&](size_t page) {
     return options.output_path + "/texture_" + std::to_string(page) +
@@ -159,6 +131,7 @@ std::vector<PreviewView> DrawDense(const std::string& dir,
 
 void WritePreviews(const ReconstructOptions& options,
                    const ExportInput& input,
+                   const TextureBaker& baker,
                    const TexturedMesh& model) {
   const std::string dir = options.output_path + "/previews";
   const std::vector<PreviewView> views = DrawDense(dir, input);
@@ -174,16 +147,15 @@ void WritePreviews(const ReconstructOptions& options,
       SampleViews(RayScene(start), start, views);
   KeyframeImages as_taken = input.images;
   as_taken.exposures.clear();
-  const TexturedMesh before = Bake(options,
-                                   input,
-                                   as_taken,
-                                   start,
-                                   input.initial_planes,
-                                   input.initial_cam_from_world,
-                                   {},
-                                   nullptr,
-                                   SeenFaces(start, sampled));
-  DrawTextured(dir, "before", sampled, before);
+  const TextureState before = {
+      start, input.initial_planes, as_taken, input.initial_cam_from_world, {}};
+  DrawTextured(
+      dir,
+      "before",
+      sampled,
+      MakeModel(input,
+                start,
+                baker.BakeAs(before, SeenFaces(start, sampled))));
 }
 
 }  // namespace
@@ -202,20 +174,28 @@ json ExportRun(const ReconstructOptions& options, const ExportInput& input) {
           input.sequence, input.keyframes, input.photometric.cam_from_world));
   WritePlanes(options, input);
 
+  const TextureState state = {input.final_mesh,
+                              input.photometric.planes,
+                              input.images,
+                              input.photometric.cam_from_world,
+                              input.photometric.warps};
+  const RayScene scene(input.final_mesh);
+  const TextureBaker baker(state,
+                           input.atlas,
+                           scene,
+                           input.sequence,
+                           input.keyframes,
+                           input.photometric.lattice,
+                           options.visibility,
+                           options.bake);
   BakeReport bake;
-  const TexturedMesh model = Bake(options,
-                                  input,
-                                  input.images,
-                                  input.final_mesh,
-                                  input.photometric.planes,
-                                  input.photometric.cam_from_world,
-                                  input.photometric.warps,
-                                  &bake);
+  const TexturedMesh model =
+      MakeModel(input, input.final_mesh, baker.Bake(&bake));
   const std::vector<std::string> pages = EncodePages(model);
   ExportObj(dir, model, pages);
   ExportGlb(dir + "/mesh.glb", model, pages);
   WriteMasks(options, bake);
-  if (options.previews) WritePreviews(options, input, model);
+  if (options.previews) WritePreviews(options, input, baker, model);
 
   const MeshChecks checks = CheckMesh(input.final_mesh);
   const FlippedFaces flipped =

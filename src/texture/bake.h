@@ -25,8 +25,10 @@
 #include "render/ray_scene.h"
 #include "rgbd/sequence.h"
 #include "texture/atlas.h"
+#include "texture/bake_texels.h"
 #include "texture/keyframe_images.h"
 #include "texture/observations.h"
+#include "texture/tile_sights.h"
 
 namespace facet {
 
@@ -53,6 +55,9 @@ struct BakeOptions {
   // from those of the milder verdict of FrameView::Test.
   bool mild_fallback = true;
   BakeSampler sampler = BakeSampler::kBilinear;
+  // Visibility is tested at one texel of a square of so many; a texel is smaller
+  // than a pixel of the depth image that decides. 1 = at every texel.
+  int visibility_px = 2;
   int ring_px = 4;      // gutter coloured from the images; the rest is copied
   bool inpaint = true;  // fill unseen texels; else they stay white
 };
@@ -67,33 +72,54 @@ struct BakeReport {
   std::vector<cv::Mat> unseen_mask;  // a page: CV_8U, 255 = unseen texel
 };
 
-// Pages of the atlas, CV_8UC3 in RGB order.
-//   mesh       final vertices; its faces and vertex colours (0-255, optional:
-//              they guide the filling of unseen texels)
-//   planes     final planes by cluster id; colours are looked up at the plane
-//              point q, on steep charts at the mesh point p
-//   scene      the same mesh, for occlusion
-//   keyframes  indices into sequence.frames(), as in `images`
-//   color_cam_from_world, warps  by keyframe: pose; 2 * lattice.NumVertices()
-//              doubles [px]. `warps` may be empty.
-//   report     may be null
-//   only_faces by face, empty = all: texels of tiles without such a face count
-//   as
-//              unseen, which saves their time
-// Same result at any number of threads.
-std::vector<cv::Mat> BakeTexture(const TriMesh& mesh,
-                                 const std::vector<Plane>& planes,
-                                 const Atlas& atlas,
-                                 const RayScene& scene,
-                                 const RgbdSequence& sequence,
-                                 const std::vector<int>& keyframes,
-                                 const KeyframeImages& images,
-                                 const std::vector<Pose>& color_cam_from_world,
-                                 const WarpLattice& lattice,
-                                 const std::vector<double>& warps,
-                                 const VisibilityOptions& visibility,
-                                 const BakeOptions& options,
-                                 BakeReport* report = nullptr,
-                                 const std::vector<char>& only_faces = {});
+// A state of the model to be coloured.
+struct TextureState {
+  const TriMesh& mesh;               // with the faces of the atlas; its vertex
+                                     // colours (0-255, optional) guide the
+                                     // filling of unseen texels
+  const std::vector<Plane>& planes;  // by cluster id
+  const KeyframeImages& images;
+  const std::vector<Pose>& color_cam_from_world;  // by keyframe
+  // By keyframe 2 * lattice.NumVertices() doubles [px]; may be empty.
+  const std::vector<double>& warps;
+};
+
+// Colours are looked up at the plane point q, on steep charts at the mesh point
+// p. Everything given must outlive the baker. Same result at any number of
+// threads.
+class TextureBaker {
+ public:
+  // Finds which keyframes see the texels of the state.
+  //   scene      the state's mesh, for occlusion
+  //   keyframes  indices into sequence.frames(), as in the state's images
+  TextureBaker(const TextureState& state,
+               const Atlas& atlas,
+               const RayScene& scene,
+               const RgbdSequence& sequence,
+               const std::vector<int>& keyframes,
+               const WarpLattice& lattice,
+               const VisibilityOptions& visibility,
+               const BakeOptions& options);
+
+  // Pages of the atlas, CV_8UC3 in RGB order. `report` may be null.
+  std::vector<cv::Mat> Bake(BakeReport* report = nullptr) const;
+
+  // Pages of another state of the same model, each texel from the keyframes
+  // that see it in the baker's own: two textures of the same samples.
+  //   only_faces  by face, empty = all: texels of tiles without such a face
+  //               count as unseen, which saves their time
+  std::vector<cv::Mat> BakeAs(const TextureState& state,
+                              const std::vector<char>& only_faces = {},
+                              BakeReport* report = nullptr) const;
+
+ private:
+  const TextureState state_;
+  const Atlas& atlas_;
+  const WarpLattice& lattice_;
+  const Pinhole camera_;
+  const BakeOptions options_;
+  const BakeTexels texels_;
+  const TileSights sights_;
+};
 
 }  // namespace facet

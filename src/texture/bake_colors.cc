@@ -40,51 +40,6 @@ std::vector<float> Sharpness(const KeyframeImages& images, double power) {
   return sharpness;
 }
 
-std::vector<ColorSample> WeightedMean(const std::vector<ColorSample>& samples,
-                                      size_t n,
-                                      size_t num_views,
-                                      float power) {
-  std::vector<ColorSample> sum(n);
-  for (size_t v = 0; v < num_views; ++v) {
-    for (size_t i = 0; i < n; ++i) {
-      const ColorSample& sample = samples[n * v + i];
-      if (!(sample.weight > 0)) continue;
-      const float w = power == 1 ? sample.weight
-                                 : std::exp2(power * std::log2(sample.weight));
-      sum[i].rgb += w * sample.rgb;
-      sum[i].weight += w;
-    }
-  }
-  for (ColorSample& s : sum) {
-    if (s.weight > 0) s.rgb /= s.weight;
-  }
-  return sum;
-}
-
-void UndoExposures(const std::vector<ColorSample>& samples,
-                   const std::vector<Exposure>& exposures,
-                   float share,
-                   std::vector<ColorSample>* means) {
-  const size_t n = means->size();
-  std::vector<ColorSample> sum(n);
-  for (size_t v = 0; v < exposures.size(); ++v) {
-    const Eigen::Array3f inverse = exposures[v].gain.inverse();
-    const Eigen::Array3f offset = 255.0f * exposures[v].offset;
-    for (size_t i = 0; i < n; ++i) {
-      const float w = samples[n * v + i].weight;
-      if (!(w > 0)) continue;
-      const Eigen::Array3f seen = ((*means)[i].rgb.array() - offset) * inverse;
-      sum[i].rgb += w * seen.matrix();
-      sum[i].weight += w;
-    }
-  }
-  for (size_t i = 0; i < n; ++i) {
-    if (!(sum[i].weight > 0)) continue;
-    Vector3f& rgb = (*means)[i].rgb;
-    rgb += share * (sum[i].rgb / sum[i].weight - rgb);
-  }
-}
-
 size_t DropOutliers(size_t n,
                     size_t owned,
                     size_t num_views,

@@ -3,6 +3,8 @@
 #include "texture/bake_texels.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "util/parallel_for.h"
 
@@ -12,7 +14,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kTilePx = 32;
+constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
 
 // For every pixel of a chart the owned pixel it belongs to (itself, or the one
 // its gutter ring started from), -1 = none.
@@ -53,12 +55,17 @@ Vector3d PointOnFace(const TriMesh& mesh, int face, const Vector2d& b) {
          b.x() * mesh.vertices[f[1]] + b.y() * mesh.vertices[f[2]];
 }
 
-int LargestFace(const TriMesh& mesh, const Chart& chart) {
-  int best = chart.faces.front();
-  for (int face : chart.faces) {
-    if (mesh.FaceArea(face) > mesh.FaceArea(best)) best = face;
-  }
-  return best;
+// On the atlas, as all that says which texels there are.
+int LargestFace(const Atlas& atlas, const Chart& chart) {
+  const auto area = [&](int face) {
+    const UvTriangle uv = atlas.ChartUv(face);
+    const Vector2d a = uv[1] - uv[0], b = uv[2] - uv[0];
+    return std::abs(a.x() * b.y() - a.y() * b.x());
+  };
+  return *std::max_element(
+      chart.faces.begin(), chart.faces.end(), [&](int a, int b) {
+        return area(a) < area(b);
+      });
 }
 
 class ChartTexelizer {
@@ -67,13 +74,15 @@ class ChartTexelizer {
                  const std::vector<Plane>& planes,
                  const Atlas& atlas,
                  int chart_id,
-                 int ring_px)
+                 int ring_px,
+                 int share_px)
       : mesh_(mesh),
         plane_(planes[atlas.charts[chart_id].plane]),
         atlas_(atlas),
         chart_(atlas.charts[chart_id]),
         chart_id_(chart_id),
-        ring_px_(ring_px) {}
+        ring_px_(ring_px),
+        share_px_(share_px) {}
 
   BakeTexels Run() {
     owners_ = ChartOwners(atlas_, chart_id_);
@@ -82,13 +91,13 @@ class ChartTexelizer {
     if (!any) OwnOnePixel();
     const std::vector<int> roots =
         RootPixels(owners_, chart_.width, chart_.height, ring_px_);
-    const int columns = (chart_.width + kTilePx - 1) / kTilePx;
-    const int rows = (chart_.height + kTilePx - 1) / kTilePx;
+    const int columns = (chart_.width + kBakeTilePx - 1) / kBakeTilePx;
+    const int rows = (chart_.height + kBakeTilePx - 1) / kBakeTilePx;
     std::vector<std::vector<uint32_t>> owned(columns * rows), ring(owned);
     for (size_t i = 0; i < roots.size(); ++i) {
       if (roots[i] < 0) continue;
-      const int tile = roots[i] / chart_.width / kTilePx * columns +
-                       roots[i] % chart_.width / kTilePx;
+      const int tile = roots[i] / chart_.width / kBakeTilePx * columns +
+                       roots[i] % chart_.width / kBakeTilePx;
       const auto pixel = static_cast<uint32_t>(i);
       (roots[i] == static_cast<int>(i) ? owned : ring)[tile].push_back(pixel);
     }
@@ -98,6 +107,7 @@ class ChartTexelizer {
       BakeTile tile;
       tile.chart = chart_id_;
       tile.begin = static_cast<uint32_t>(texels_.size());
+      first_of_square_.assign(kBakeTilePx * kBakeTilePx, kNone);
       for (uint32_t pixel : owned[t]) {
         index[pixel] = static_cast<uint32_t>(texels_.size());
         AddOwned(pixel);
@@ -112,7 +122,7 @@ class ChartTexelizer {
 
  private:
   void OwnOnePixel() {
-    const int face = LargestFace(mesh_, chart_);
+    const int face = LargestFace(atlas_, chart_);
     const UvTriangle uv = atlas_.ChartUv(face);
     const Vector2d middle = (uv[0] + uv[1] + uv[2]) / 3;
     const int col =
@@ -132,22 +142,33 @@ class ChartTexelizer {
     texels_.p.push_back(p.cast<float>());
     texels_.q.push_back(q.cast<float>());
     texels_.pixel.push_back(pixel);
-    texels_.source.push_back(static_cast<uint32_t>(texels_.source.size()));
+    texels_.source.push_back(SourceOf(pixel, face));
     texels_.face.push_back(face);
   }
 
-  void AddRing(uint32_t pixel, uint32_t source) {
+  uint32_t SourceOf(uint32_t pixel, int face) {
+    const auto self = static_cast<uint32_t>(texels_.source.size());
+    const uint32_t column = pixel % chart_.width % kBakeTilePx / share_px_;
+    const uint32_t row = pixel / chart_.width % kBakeTilePx / share_px_;
+    uint32_t& first = first_of_square_[row * kBakeTilePx + column];
+    if (first == kNone) first = self;
+    return chart_.steep && first != self && texels_.face[first] != face ? self
+                                                                       : first;
+  }
+
+  // `root` is an owned texel.
+  void AddRing(uint32_t pixel, uint32_t root) {
     const int width = chart_.width;
-    const int from = static_cast<int>(texels_.pixel[source]);
+    const int from = static_cast<int>(texels_.pixel[root]);
     const int to = static_cast<int>(pixel);
     const Vector3d offset =
         atlas_.spacing_m * ((to % width - from % width) * chart_.e1 +
                             (to / width - from / width) * chart_.e2);
-    texels_.p.push_back(texels_.p[source] + offset.cast<float>());
-    texels_.q.push_back(texels_.q[source] + offset.cast<float>());
+    texels_.p.push_back(texels_.p[root] + offset.cast<float>());
+    texels_.q.push_back(texels_.q[root] + offset.cast<float>());
     texels_.pixel.push_back(pixel);
-    texels_.source.push_back(source);
-    texels_.face.push_back(texels_.face[source]);
+    texels_.source.push_back(texels_.source[root]);
+    texels_.face.push_back(texels_.face[root]);
   }
 
   const TriMesh& mesh_;
@@ -156,7 +177,10 @@ class ChartTexelizer {
   const Chart& chart_;
   const int chart_id_;
   const int ring_px_;
+  const int share_px_;
   std::vector<int> owners_;
+  // Of the current tile: the first owned texel of every square.
+  std::vector<uint32_t> first_of_square_;
   BakeTexels texels_;
 };
 
@@ -170,12 +194,15 @@ void Append(const std::vector<T>& from, std::vector<T>* to) {
 BakeTexels MakeBakeTexels(const TriMesh& mesh,
                           const std::vector<Plane>& planes,
                           const Atlas& atlas,
-                          int ring_px) {
+                          int ring_px,
+                          int share_px) {
   const size_t num_charts = atlas.charts.size();
   std::vector<BakeTexels> of_chart(num_charts);
   ParallelFor(0, num_charts, [&](size_t c) {
     of_chart[c] =
-        ChartTexelizer(mesh, planes, atlas, static_cast<int>(c), ring_px).Run();
+        ChartTexelizer(
+            mesh, planes, atlas, static_cast<int>(c), ring_px, share_px)
+            .Run();
   });
   BakeTexels all;
   size_t total = 0;

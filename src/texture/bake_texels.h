@@ -15,7 +15,9 @@
 
 namespace facet {
 
-// Texels of up to 32 x 32 px of one chart: [begin, owned_end) lie in a face;
+inline constexpr int kBakeTilePx = 32;
+
+// Texels of up to kBakeTilePx x kBakeTilePx px of one chart: [begin, owned_end) lie in a face;
 // [owned_end, end) are gutter texels that follow one of them.
 struct BakeTile {
   int chart = 0;
@@ -29,10 +31,11 @@ struct BakeTexels {
   std::vector<Eigen::Vector3f> p;     // on the mesh, world [m]
   std::vector<Eigen::Vector3f> q;     // to be coloured, world [m]
   std::vector<uint32_t> pixel;        // row * chart.width + column
-  // Index of the owned texel whose visibility a gutter texel shares; an owned
-  // texel names itself.
+  // Index of the owned texel whose visibility this one shares: the first of its
+  // tile in the same square of `share_px` texels. Gutter texels share that of
+  // the texel they follow.
   std::vector<uint32_t> source;
-  std::vector<int> face;  // of the source
+  std::vector<int> face;  // gutter: of the texel they follow
 
   size_t size() const { return p.size(); }
 };
@@ -41,10 +44,12 @@ struct BakeTexels {
 // built); q = p projected onto its plane, for steep charts q = p. A gutter
 // texel up to `ring_px` (8-neighbour steps) away from an owned one continues
 // the chart in its plane: q = q_source + h (dx e1 + dy e2). A chart without any
-// owned texel gets one, at the centroid of its largest face.
+// owned texel gets one, at the centroid of its largest face. On steep charts only
+// texels of one face share a source. All but p and q depends on the atlas only.
 BakeTexels MakeBakeTexels(const TriMesh& mesh,
                           const std::vector<Plane>& planes,
                           const Atlas& atlas,
-                          int ring_px);
+                          int ring_px,
+                          int share_px);
 
 }  // namespace facet

@@ -204,11 +204,13 @@ std::vector<Vector3f> VertexBaseColors(const TriMesh& mesh,
     return base;
   }
   std::vector<Eigen::Vector4d> sum(n, Eigen::Vector4d::Zero());
-  for (size_t i = 0; i < texels.size(); ++i) {
-    if (!seen[i] || texels.source[i] != i) continue;
-    const Vector3f& c = colors[i];
-    for (int v : mesh.faces[texels.face[i]]) {
-      sum[v] += Eigen::Vector4d(c.x(), c.y(), c.z(), 1);
+  for (const BakeTile& tile : texels.tiles) {
+    for (uint32_t i = tile.begin; i < tile.owned_end; ++i) {
+      if (!seen[i]) continue;
+      const Vector3f& c = colors[i];
+      for (int v : mesh.faces[texels.face[i]]) {
+        sum[v] += Eigen::Vector4d(c.x(), c.y(), c.z(), 1);
+      }
     }
   }
   std::vector<uint8_t> known(n, 0);
