@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "problems/tile_samples.h"
-#include "util/parallel_for.h"
 
 namespace facet {
 namespace {
@@ -29,24 +28,25 @@ void KeepBetterColors(const TextureProblem& problem,
 }  // namespace
 
 void SolveColors(const TextureProblem& problem, ReconState* state) {
-  for (int channel = 0; channel < problem.NumChannels(); ++channel) {
-    float* colors = state->colors.data() + channel * problem.texels.size();
-    std::vector<float> warps;
-    const std::vector<PhotoFrame> frames =
-        MakePhotoFrames(problem, *state, false, &warps, channel);
-    const std::vector<PhotoTexel> points =
-        PlanePoints(problem, *state, channel);
-    ParallelFor(0, problem.tiles.size(), [&](size_t t) {
-      const TexelTile& tile = problem.tiles[t];
-      TileSamples samples;
-      SampleTile(problem, frames, points, tile, nullptr, nullptr, &samples);
-      KeepBetterColors(problem, tile, colors + tile.texel_begin, &samples);
-      for (size_t i = tile.texel_begin; i < tile.texel_end; ++i) {
-        const float mean = samples.mean[i - tile.texel_begin];
-        if (problem.views[i] > 0 && !std::isnan(mean)) colors[i] = mean;
-      }
-    });
-  }
+  const std::vector<PhotoChannel> channels =
+      MakePhotoChannels(problem, *state, PointsAt::kPlane);
+  ForEachTile(
+      problem,
+      channels,
+      {},
+      [&](size_t t, std::vector<TileSamples>* samples) {
+        const TexelTile& tile = problem.tiles[t];
+        float* colors = state->colors.data();
+        for (TileSamples& channel : *samples) {
+          KeepBetterColors(
+              problem, tile, colors + tile.texel_begin, &channel);
+          for (size_t i = tile.texel_begin; i < tile.texel_end; ++i) {
+            const float mean = channel.mean[i - tile.texel_begin];
+            if (problem.views[i] > 0 && !std::isnan(mean)) colors[i] = mean;
+          }
+          colors += problem.texels.size();
+        }
+      });
 }
 
 }  // namespace facet

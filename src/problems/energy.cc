@@ -12,38 +12,40 @@
 namespace facet {
 namespace {
 
-struct TileSums {
+struct ResidualSums {
   double squares = 0;
   PhotoCounts counts;
 };
 
-// Sum of rho of the residuals of a channel against the state's colours; raw: of
-// the squared residuals of the unsmoothed luma against the means of what is
+// Sum of rho of the residuals of all channels against the state's colours; raw:
+// of the squared residuals of the unsmoothed luma against the means of what is
 // sampled.
-TileSums SumResiduals(const TextureProblem& problem,
-                      const ReconState& state,
-                      bool raw,
-                      int channel) {
-  std::vector<float> warps;
-  const std::vector<PhotoFrame> frames =
-      MakePhotoFrames(problem, state, raw, &warps, channel);
-  const std::vector<PhotoTexel> points = PlanePoints(problem, state, channel);
-  const float* state_colors =
-      state.colors.data() + channel * problem.texels.size();
-  std::vector<TileSums> sums(problem.tiles.size());
-  ParallelFor(0, problem.tiles.size(), [&](size_t t) {
-    const TexelTile& tile = problem.tiles[t];
-    TileSamples samples;
-    SampleTile(problem, frames, points, tile, nullptr, nullptr, &samples);
-    const float* colors =
-        raw ? samples.mean.data() : state_colors + tile.texel_begin;
-    sums[t] = {SumLoss(problem, tile, samples, colors), samples.counts};
-  });
-  TileSums total;
-  for (const TileSums& s : sums) {
-    total.squares += s.squares;
-    total.counts += s.counts;
+ResidualSums SumResiduals(const TextureProblem& problem,
+                          const ReconState& state,
+                          bool raw) {
+  std::vector<PhotoChannel> channels;
+  if (raw) {
+    channels.push_back(
+        MakePhotoChannel(problem, state, PointsAt::kPlane, true, 0));
+  } else {
+    channels = MakePhotoChannels(problem, state, PointsAt::kPlane);
   }
+  std::vector<double> squares(problem.tiles.size());
+  ResidualSums total;
+  total.counts = ForEachTile(
+      problem,
+      channels,
+      {},
+      [&](size_t t, const std::vector<TileSamples>* samples) {
+        const TexelTile& tile = problem.tiles[t];
+        const float* colors = state.colors.data() + tile.texel_begin;
+        for (const TileSamples& channel : *samples) {
+          squares[t] += SumLoss(
+              problem, tile, channel, raw ? channel.mean.data() : colors);
+          colors += problem.texels.size();
+        }
+      });
+  for (const double s : squares) total.squares += s;
   return total;
 }
 
@@ -82,10 +84,7 @@ EnergyTerms EvaluateEnergy(const TextureProblem& problem,
                            const EnergyWeights& weights,
                            const ReconState& state,
                            bool with_rms_grey) {
-  TileSums sums = SumResiduals(problem, state, false, 0);
-  for (int channel = 1; channel < problem.NumChannels(); ++channel) {
-    sums.squares += SumResiduals(problem, state, false, channel).squares;
-  }
+  ResidualSums sums = SumResiduals(problem, state, false);
   sums.squares /= problem.NumChannels();
   EnergyTerms terms;
   terms.texel_weight = weights.texel_weight;
@@ -104,7 +103,7 @@ EnergyTerms EvaluateEnergy(const TextureProblem& problem,
   terms.behind = sums.counts.behind;
   terms.lost = sums.counts.lost;
   if (with_rms_grey && terms.observations > 0) {
-    const TileSums raw = SumResiduals(problem, state, true, 0);
+    const ResidualSums raw = SumResiduals(problem, state, true);
     terms.rms_grey =
         255 * std::sqrt(raw.squares / static_cast<double>(raw.counts.used));
   }

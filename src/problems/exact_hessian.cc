@@ -54,7 +54,7 @@ std::vector<double> WeightSums(const TextureProblem& problem,
                                const TileSamples& samples) {
   std::vector<double> sums(tile.texel_end - tile.texel_begin, 0.0);
   ForEachSample(problem, tile, samples, [&](size_t, size_t texel, size_t i) {
-    sums[texel] += samples.weight.empty() ? 1.0 : samples.weight[i];
+    sums[texel] += samples.weight ? samples.weight[i] : 1.0;
   });
   return sums;
 }
@@ -74,7 +74,7 @@ void AddSamples(const ExactScene& scene,
   Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(
       h->rows(), static_cast<Eigen::Index>(weight_sums.size()));
   ForEachSample(problem, tile, samples, [&](size_t s, size_t texel, size_t i) {
-    const double weight = samples.weight.empty() ? 1.0 : samples.weight[i];
+    const double weight = samples.weight ? samples.weight[i] : 1.0;
     if (weight == 0) return;
     const PhotoRows rows = RowsOf(scene,
                                   tile,
@@ -99,24 +99,18 @@ void AddSamples(const ExactScene& scene,
   h->selfadjointView<Eigen::Upper>().rankUpdate(sums, -channel_weight);
 }
 
-Eigen::MatrixXd TileHessian(const ExactScene& scene, const TexelTile& tile) {
+Eigen::MatrixXd TileHessian(const ExactScene& scene,
+                            size_t t,
+                            TileSlab* slab) {
   const TextureProblem& problem = scene.problem;
+  const TexelTile& tile = problem.tiles[t];
   const PlaneFrame frame(scene.state.planes.data() + kPlaneSize * tile.plane);
-  const Eigen::Vector3f e1 = frame.e1.cast<float>();
-  const Eigen::Vector3f e2 = frame.e2.cast<float>();
   const Eigen::Index size =
       6 * static_cast<Eigen::Index>(tile.segment_end - tile.segment_begin) + 4;
   Eigen::MatrixXd h = Eigen::MatrixXd::Zero(size, size);
-  TileSamples samples;
-  for (const PhotoChannel& channel : scene.channels) {
-    SampleTile(problem,
-               channel.frames,
-               scene.channels[0].points,
-               tile,
-               e1.data(),
-               e2.data(),
-               &samples);
-    AddSamples(scene, tile, frame, samples, 1.0 / problem.NumChannels(), &h);
+  for (size_t c = 0; c < scene.channels.size(); ++c) {
+    AddSamples(
+        scene, tile, frame, slab->Of(t, c), 1.0 / problem.NumChannels(), &h);
   }
   return h;
 }
@@ -162,14 +156,17 @@ JointHessian ExactHessian(const TextureProblem& problem,
                             state,
                             MakePhotoChannels(problem, state, PointsAt::kPlane),
                             MakeFramePoses(problem, state)};
+  const std::vector<PlaneAxes> axes = AxesOfPlanes(problem, state);
+  TileSlab slab(problem, scene.channels, axes);
   JointHessian sum = ZeroJointHessian(problem, plane_basis.size());
   // Tiles are added up in order; a batch at a time bounds the memory.
   constexpr size_t kBatch = 64;
   std::vector<Eigen::MatrixXd> batch(kBatch);
   for (size_t begin = 0; begin < problem.tiles.size(); begin += kBatch) {
     const size_t end = std::min(begin + kBatch, problem.tiles.size());
+    slab.Sample(begin, end);
     ParallelFor(begin, end, [&](size_t t) {
-      batch[t - begin] = TileHessian(scene, problem.tiles[t]);
+      batch[t - begin] = TileHessian(scene, t, &slab);
     });
     for (size_t t = begin; t < end; ++t) {
       AddTile(problem,

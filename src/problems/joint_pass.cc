@@ -56,8 +56,7 @@ void AddTexelTensors(const TextureProblem& problem,
                      double weight,
                      std::vector<Eigen::Vector3d>* tensors) {
   std::vector<TexelGradients> texels(tile.texel_end - tile.texel_begin);
-  const float* weights =
-      samples.weight.empty() ? nullptr : samples.weight.data();
+  const float* weights = samples.weight;
   ForEachSample(problem, tile, samples, [&](size_t, size_t texel, size_t i) {
     const float w = weights ? weights[i] : 1.0f;
     if (w == 0) return;
@@ -167,7 +166,7 @@ double WeightOf(const TileSegment& segment,
                 const TileSamples& samples,
                 size_t offset) {
   const size_t n = segment.end - segment.begin;
-  if (samples.weight.empty()) return static_cast<double>(n);
+  if (!samples.weight) return static_cast<double>(n);
   double sum = 0;
   for (size_t i = 0; i < n; ++i) sum += samples.weight[offset + i];
   return sum;
@@ -196,20 +195,21 @@ class TileWorker {
         poses_(MakeFramePoses(problem, state)),
         own_share_(own_share),
         pass_(pass),
-        squares_(problem.tiles.size(), 0.0),
-        counts_(problem.tiles.size()) {}
+        squares_(problem.tiles.size(), 0.0) {}
 
   void FindCosts() {
-    ParallelFor(0, problem_.tiles.size(), [this](size_t t) {
-      const TexelTile& tile = problem_.tiles[t];
-      TileSamples samples;
-      for (const PhotoChannel& channel : channels_) {
-        Sample(channel, tile, nullptr, &samples);
-        squares_[t] += channel_weight_ *
-                       SumLoss(problem_, tile, samples, samples.mean.data());
-      }
-      counts_[t] = samples.counts;
-    });
+    pass_->counts = ForEachTile(
+        problem_,
+        channels_,
+        {},
+        [this](size_t t, const std::vector<TileSamples>* samples) {
+          for (const TileSamples& channel : *samples) {
+            squares_[t] += channel_weight_ * SumLoss(problem_,
+                                                     problem_.tiles[t],
+                                                     channel,
+                                                     channel.mean.data());
+          }
+        });
     SumCosts();
   }
 
@@ -224,7 +224,13 @@ class TileWorker {
     pass_->views.resize(problem_.segments.size());
     pass_->tensors.resize(problem_.tiles.size());
     gradients_.resize(problem_.segments.size());
-    ParallelFor(0, problem_.tiles.size(), [this](size_t t) { PassTile(t); });
+    pass_->counts =
+        ForEachTile(problem_,
+                    channels_,
+                    AxesOfPlanes(problem_, state_),
+                    [this](size_t t, const std::vector<TileSamples>* samples) {
+                      PassTile(t, *samples);
+                    });
     SumCosts();
     SumGradients();
   }
@@ -234,25 +240,7 @@ class TileWorker {
     return PlaneFrame(state_.planes.data() + kPlaneSize * plane);
   }
 
-  void Sample(const PhotoChannel& channel,
-              const TexelTile& tile,
-              const PlaneFrame* gradient_axes,
-              TileSamples* samples) const {
-    Eigen::Vector3f e1, e2;
-    if (gradient_axes) {
-      e1 = gradient_axes->e1.cast<float>();
-      e2 = gradient_axes->e2.cast<float>();
-    }
-    SampleTile(problem_,
-               channel.frames,
-               points_,
-               tile,
-               gradient_axes ? e1.data() : nullptr,
-               gradient_axes ? e2.data() : nullptr,
-               samples);
-  }
-
-  void PassTile(size_t t) {
+  void PassTile(size_t t, const std::vector<TileSamples>& by_channel) {
     const TexelTile& tile = problem_.tiles[t];
     const PlaneFrame frame = FrameOf(tile.plane);
     Patch patch = MakePatch(problem_, tile, points_, frame);
@@ -263,9 +251,7 @@ class TileWorker {
     const double seen = static_cast<double>(TexelsSeen(problem_, tile));
     std::vector<Eigen::Vector3d> tensors(patch.texels.size(),
                                          Eigen::Vector3d::Zero());
-    TileSamples samples;
-    for (const PhotoChannel& channel : channels_) {
-      Sample(channel, tile, &frame, &samples);
+    for (const TileSamples& samples : by_channel) {
       AddTexelTensors(
           problem_, tile, samples, own_share_, channel_weight_, &tensors);
       for (size_t i = 0; i < patch.texels.size(); ++i) {
@@ -275,12 +261,11 @@ class TileWorker {
       for (size_t s = tile.segment_begin; s < tile.segment_end; ++s) {
         squares += PassView(tile, s, seen, samples, patch, frame);
       }
-      if (!samples.weight.empty()) {
+      if (samples.weight) {
         squares = SumLoss(problem_, tile, samples, samples.mean.data());
       }
       squares_[t] += channel_weight_ * squares;
     }
-    counts_[t] = samples.counts;
     if (tile.segment_begin == tile.segment_end) return;
     pass_->tensors[t] = SumTensors(problem_, points_, tile, frame, tensors);
     for (size_t s = tile.segment_begin; s < tile.segment_end; ++s) {
@@ -307,10 +292,10 @@ class TileWorker {
                           static_cast<float>(frame.n.dot(d))};
     PhotoViewSums sums;
     GetPhotoKernel().view_sums(
-        samples.intensity.data() + offset,
-        samples.g1.data() + offset,
-        samples.g2.data() + offset,
-        samples.weight.empty() ? nullptr : samples.weight.data() + offset,
+        samples.intensity + offset,
+        samples.g1 + offset,
+        samples.g2 + offset,
+        samples.weight ? samples.weight + offset : nullptr,
         patch.texels.data(),
         problem_.observations.texel.data() + segment.begin,
         static_cast<uint32_t>(tile.texel_begin),
@@ -328,7 +313,6 @@ class TileWorker {
     for (size_t t = 0; t < squares_.size(); ++t) {
       pass_->squares += squares_[t];
       pass_->plane_squares[problem_.tiles[t].plane] += squares_[t];
-      pass_->counts += counts_[t];
     }
   }
 
@@ -352,8 +336,7 @@ class TileWorker {
   const std::vector<FramePose> poses_;
   const double own_share_;
   JointPass* pass_;
-  std::vector<double> squares_;      // by tile
-  std::vector<PhotoCounts> counts_;  // by tile
+  std::vector<double> squares_;  // by tile
   std::vector<SegmentGradient> gradients_;
 };
 
@@ -381,6 +364,16 @@ std::vector<FramePose> MakeFramePoses(const TextureProblem& problem,
     poses[k].center = -poses[k].r.transpose() * poses[k].t;
   }
   return poses;
+}
+
+std::vector<PlaneAxes> AxesOfPlanes(const TextureProblem& problem,
+                                    const ReconState& state) {
+  std::vector<PlaneAxes> axes;
+  for (int j = 0; j < problem.NumPlanes(); ++j) {
+    const PlaneFrame frame(state.planes.data() + kPlaneSize * j);
+    axes.push_back({frame.e1.cast<float>(), frame.e2.cast<float>()});
+  }
+  return axes;
 }
 
 JointPass RunJointPass(const TextureProblem& problem,

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "problems/texture_problem.h"
+#include "problems/tile_samples.h"
 
 namespace facet {
 
@@ -45,5 +46,9 @@ struct PlaneFrame {
     return -(g1 * d.dot(e1) + g2 * d.dot(e2)) / d.dot(n);
   }
 };
+
+// e1, e2 of every plane.
+std::vector<PlaneAxes> AxesOfPlanes(const TextureProblem& problem,
+                                    const ReconState& state);
 
 }  // namespace facet

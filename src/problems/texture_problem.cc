@@ -89,10 +89,16 @@ void BuildSegments(TextureProblem* problem) {
     problem->tiles[t].segment_begin = begin[t];
     problem->tiles[t].segment_end = begin[t + 1];
   }
+  problem->keyframe_segments.clear();
+  problem->keyframe_segment_begin.assign(1, 0);
   for (const auto& list : by_frame) {
     for (const auto& item : list) {
-      problem->segments[begin[item.first]++] = item.second;
+      const size_t s = begin[item.first]++;
+      problem->segments[s] = item.second;
+      problem->keyframe_segments.push_back(static_cast<uint32_t>(s));
     }
+    problem->keyframe_segment_begin.push_back(
+        problem->keyframe_segments.size());
   }
 }
 
@@ -343,17 +349,26 @@ std::vector<PhotoTexel> MeshPoints(const TextureProblem& problem,
   return points;
 }
 
+PhotoChannel MakePhotoChannel(const TextureProblem& problem,
+                              const ReconState& state,
+                              PointsAt points,
+                              bool raw,
+                              int channel) {
+  PhotoChannel result;
+  result.frames =
+      MakePhotoFrames(problem, state, raw, &result.warps, channel);
+  result.points = points == PointsAt::kPlane
+                      ? PlanePoints(problem, state, channel)
+                      : MeshPoints(problem, state, channel);
+  return result;
+}
+
 std::vector<PhotoChannel> MakePhotoChannels(const TextureProblem& problem,
                                             const ReconState& state,
                                             PointsAt points) {
-  std::vector<PhotoChannel> channels(problem.NumChannels());
-  for (size_t c = 0; c < channels.size(); ++c) {
-    const int channel = static_cast<int>(c);
-    channels[c].frames =
-        MakePhotoFrames(problem, state, false, &channels[c].warps, channel);
-    channels[c].points = points == PointsAt::kPlane
-                             ? PlanePoints(problem, state, channel)
-                             : MeshPoints(problem, state, channel);
+  std::vector<PhotoChannel> channels;
+  for (int c = 0; c < problem.NumChannels(); ++c) {
+    channels.push_back(MakePhotoChannel(problem, state, points, false, c));
   }
   return channels;
 }

@@ -69,6 +69,10 @@ struct TextureProblem {
   Observations observations;
   std::vector<TexelTile> tiles;
   std::vector<TileSegment> segments;     // by tile, ascending keyframe
+  // The segments of keyframe k by ascending tile: indices
+  // keyframe_segments[keyframe_segment_begin[k] .. [k + 1]).
+  std::vector<uint32_t> keyframe_segments;
+  std::vector<size_t> keyframe_segment_begin;
   std::vector<size_t> plane_tile_begin;  // planes + 1: tiles of each plane
   std::vector<Eigen::Vector3d> anchors;  // of the planes, world [m]
   // What E_p holds the planes to: their surface in the dense mesh, counted like
@@ -139,6 +143,13 @@ struct PhotoChannel {
 };
 
 enum class PointsAt { kPlane, kMesh };
+// One channel; `raw` as in MakePhotoFrames.
+PhotoChannel MakePhotoChannel(const TextureProblem& problem,
+                              const ReconState& state,
+                              PointsAt points,
+                              bool raw,
+                              int channel);
+// All channels of E_c.
 std::vector<PhotoChannel> MakePhotoChannels(const TextureProblem& problem,
                                             const ReconState& state,
                                             PointsAt points);
