@@ -9,6 +9,21 @@
 
 namespace facet {
 
+void SetFrameCamera(const Pinhole& camera,
+                    const WarpLattice& lattice,
+                    PhotoFrame* frame) {
+  frame->width = camera.width;
+  frame->height = camera.height;
+  frame->fx = static_cast<float>(camera.fx);
+  frame->fy = static_cast<float>(camera.fy);
+  frame->cx = static_cast<float>(camera.cx);
+  frame->cy = static_cast<float>(camera.cy);
+  frame->columns = lattice.columns;
+  frame->rows = lattice.rows;
+  frame->inverse_cell_width = static_cast<float>(1 / lattice.CellWidth());
+  frame->inverse_cell_height = static_cast<float>(1 / lattice.CellHeight());
+}
+
 void SetFramePose(const double* pose,
                   const Eigen::Vector3d& origin,
                   PhotoFrame* frame) {

@@ -21,8 +21,15 @@
 
 #include "costs/photo_kernel.h"
 #include "costs/se3_manifold.h"
+#include "geometry/pinhole.h"
+#include "geometry/warp_grid.h"
 
 namespace facet {
+
+// Sets intrinsics, size and lattice of `frame`.
+void SetFrameCamera(const Pinhole& camera,
+                    const WarpLattice& lattice,
+                    PhotoFrame* frame);
 
 // Sets rotation and translation of `frame` from a pose block; world coordinates
 // of the kernel are relative to `origin`.

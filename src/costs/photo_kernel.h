@@ -70,6 +70,12 @@ struct PhotoViewSums {
   float s_g1, s_g2, s_gn;
 };
 
+// Where sample_rgb writes.
+struct PhotoColors {
+  float *u, *v;                // [px]
+  float *red, *green, *blue;  // 0-255
+};
+
 struct PhotoCounts {
   size_t used = 0;     // all samples
   size_t clamped = 0;  // of them outside the image, moved to its border
@@ -114,6 +120,17 @@ struct PhotoKernel {
                           float* g1,
                           float* g2,
                           PhotoCounts* counts);
+
+  // As `sample`, but colours (0-255) of an image of 8-bit RGB pixels, rows
+  // `row_bytes` apart, in place of frame.image; bilinear, frozen. Also the pixel
+  // (u, v) = F(pi(R q + t)), which may lie outside.
+  void (*sample_rgb)(const PhotoFrame& frame,
+                     const uint8_t* rgb,
+                     ptrdiff_t row_bytes,
+                     const PhotoTexel* texels,
+                     const uint32_t* ids,
+                     size_t n,
+                     const PhotoColors& out);
 
   // From samples of sample_gradient in one view of a patch, whose texels are
   // ids[k] - first. `weight` may be null. ray = (e1.d, e2.d, n.d) of the

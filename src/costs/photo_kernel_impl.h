@@ -94,6 +94,81 @@ void SampleGradient(const PhotoFrame& frame,
   counts->used += n;
 }
 
+// Bytes of a pixel as numbers.
+inline float Red(uint32_t pixel) { return static_cast<float>(pixel & 255); }
+inline float Green(uint32_t pixel) {
+  return static_cast<float>(pixel >> 8 & 255);
+}
+inline float Blue(uint32_t pixel) {
+  return static_cast<float>(pixel >> 16 & 255);
+}
+
+inline uint32_t FourBytes(const uint8_t* p) {
+  return p[0] | static_cast<uint32_t>(p[1]) << 8 |
+         static_cast<uint32_t>(p[2]) << 16 | static_cast<uint32_t>(p[3]) << 24;
+}
+
+void SampleRgb(const PhotoFrame& frame,
+               const uint8_t* rgb,
+               ptrdiff_t row_bytes,
+               const PhotoTexel* texels,
+               const uint32_t* ids,
+               size_t n,
+               const PhotoColors& out) {
+  const float max_u = static_cast<float>(frame.width - 1);
+  const float max_v = static_cast<float>(frame.height - 1);
+  const float max_x = static_cast<float>(frame.width - 2);
+  const float max_y = static_cast<float>(frame.height - 2);
+  PhotoCounts counts;
+  Chunk c;
+  Lane a, b, red, green, blue;
+  alignas(64) uint32_t p00[kLanes], p10[kLanes], p01[kLanes], p11[kLanes];
+  for (size_t begin = 0; begin < n; begin += kLanes) {
+    const int m = ChunkSize(n - begin);
+    Load(texels, ids + begin, m, &c);
+    Project(frame, &c, &counts);
+    if (frame.warp) WarpAnywhere(frame, &c);
+    const int lanes = LanesOf(c);
+    alignas(64) int x[kLanes], y[kLanes];
+    for (int i = 0; i < lanes; ++i) {
+      const float u = c.u.v[i], v = c.v.v[i];
+      const float uc = u > 0 ? (u < max_u ? u : max_u) : 0.0f;
+      const float vc = v > 0 ? (v < max_v ? v : max_v) : 0.0f;
+      x[i] = static_cast<int>(uc < max_x ? uc : max_x);
+      y[i] = static_cast<int>(vc < max_y ? vc : max_y);
+      a.v[i] = uc - static_cast<float>(x[i]);
+      b.v[i] = vc - static_cast<float>(y[i]);
+    }
+    // The right pixel with the byte before it, so that nothing behind the image
+    // is read.
+    for (int i = 0; i < lanes; ++i) {
+      const uint8_t* at = rgb + y[i] * row_bytes + 3 * x[i];
+      p00[i] = FourBytes(at);
+      p10[i] = FourBytes(at + 2) >> 8;
+      p01[i] = FourBytes(at + row_bytes);
+      p11[i] = FourBytes(at + row_bytes + 2) >> 8;
+    }
+    for (int i = 0; i < lanes; ++i) {
+      const float w00 = (1 - a.v[i]) * (1 - b.v[i]);
+      const float w10 = a.v[i] * (1 - b.v[i]);
+      const float w01 = (1 - a.v[i]) * b.v[i], w11 = a.v[i] * b.v[i];
+      red.v[i] = w00 * Red(p00[i]) + w10 * Red(p10[i]) + w01 * Red(p01[i]) +
+                 w11 * Red(p11[i]);
+      green.v[i] = w00 * Green(p00[i]) + w10 * Green(p10[i]) +
+                   w01 * Green(p01[i]) + w11 * Green(p11[i]);
+      blue.v[i] = w00 * Blue(p00[i]) + w10 * Blue(p10[i]) +
+                  w01 * Blue(p01[i]) + w11 * Blue(p11[i]);
+    }
+    for (int i = 0; i < m; ++i) {
+      out.u[begin + i] = c.u.v[i];
+      out.v[begin + i] = c.v.v[i];
+      out.red[begin + i] = red.v[i];
+      out.green[begin + i] = green.v[i];
+      out.blue[begin + i] = blue.v[i];
+    }
+  }
+}
+
 // Samples of weight 0 may have no intensity: they count as residual 0.
 void ViewSums(const float* intensity,
               const float* g1,
@@ -253,6 +328,7 @@ extern const PhotoKernel kKernel;
 const PhotoKernel kKernel = {FACET_KERNEL_NAME,
                              Sample,
                              SampleGradient,
+                             SampleRgb,
                              ViewSums,
                              FrameCell,
                              PlaneSegment};

@@ -276,20 +276,12 @@ std::vector<PhotoFrame> MakePhotoFrames(const TextureProblem& problem,
     PhotoFrame& f = frames[k];
     const ImageView<float>& image =
         raw ? problem.raw_images[k] : problem.Image(channel, k);
+    SetFrameCamera(problem.camera, problem.lattice, &f);
     f.image = image.data;
     f.width = image.width;
     f.height = image.height;
     f.stride = image.stride;
-    f.fx = static_cast<float>(problem.camera.fx);
-    f.fy = static_cast<float>(problem.camera.fy);
-    f.cx = static_cast<float>(problem.camera.cx);
-    f.cy = static_cast<float>(problem.camera.cy);
     SetFramePose(state.poses.data() + kPoseSize * k, problem.origin, &f);
-    f.columns = problem.lattice.columns;
-    f.rows = problem.lattice.rows;
-    f.inverse_cell_width = static_cast<float>(1 / problem.lattice.CellWidth());
-    f.inverse_cell_height =
-        static_cast<float>(1 / problem.lattice.CellHeight());
     const float* begin = warps->data() + num_warp * k;
     if (std::any_of(begin, begin + num_warp, [](float x) { return x != 0; })) {
       f.warp = begin;

@@ -12,9 +12,7 @@
 namespace facet {
 namespace {
 
-using Eigen::Vector3f;
-
-float Luma(const Vector3f& rgb) {
+float Luma(const Eigen::Array4f& rgb) {
   return (0.299f * rgb.x() + 0.587f * rgb.y() + 0.114f * rgb.z()) / 255.0f;
 }
 
@@ -53,7 +51,7 @@ size_t DropOutliers(size_t n,
     for (size_t v = 0; v < num_views; ++v) {
       const ColorSample& sample = (*samples)[n * v + i];
       if (!(sample.weight > 0)) continue;
-      lumas.emplace_back(Luma(sample.rgb), sample.weight);
+      lumas.emplace_back(Luma(sample.color), sample.weight);
       total += sample.weight;
     }
     if (lumas.size() < 2) continue;
@@ -68,7 +66,7 @@ size_t DropOutliers(size_t n,
     for (size_t v = 0; v < num_views; ++v) {
       ColorSample& sample = (*samples)[n * v + i];
       if (!(sample.weight > 0)) continue;
-      if (std::abs(Luma(sample.rgb) - median) <= limit) continue;
+      if (std::abs(Luma(sample.color) - median) <= limit) continue;
       sample.weight = 0;
       dropped += i < owned;
     }

@@ -14,43 +14,49 @@ namespace facet {
 
 // One image lookup and what it counts.
 struct ColorSample {
-  Eigen::Vector3f rgb = Eigen::Vector3f::Zero();  // 0-255
+  Eigen::Array4f color = Eigen::Array4f::Zero();  // (rgb, 1), 0-255
   float weight = 0;                               // 0 = not there
 };
 
 // Sharpness of every keyframe relative to the median one; all 1 if power is 0.
 std::vector<float> Sharpness(const KeyframeImages& images, double power);
 
-// Sums over the samples of one texel.
-struct ColorSum {
-  Eigen::Array3f rgb = Eigen::Array3f::Zero();  // w C
-  float weight = 0;                             // w
-  // Of C -> (C - offset) / gain, the way back to the exposures of the samples:
-  // w / gain and w offset / gain, offset in 0-255.
-  Eigen::Array3f inverse = Eigen::Array3f::Zero();
-  Eigen::Array3f shift = Eigen::Array3f::Zero();
-
-  void Add(const Eigen::Vector3f& color, float w) {
-    rgb += w * color.array();
-    weight += w;
+// The exposure of a keyframe in the form of ColorSum: (red, green, blue, 1).
+struct ExposureLanes {
+  explicit ExposureLanes(const Exposure& exposure) {
+    gain << exposure.gain, 1;
+    offset << 255.0f * exposure.offset, 0;
+    inverse << exposure.gain.inverse(), 0;
+    shift = offset * inverse;
   }
 
-  // Of the exposure of the sample that was added.
-  void AddExposure(const Eigen::Array3f& inverse_gain,
-                   const Eigen::Array3f& offset_over_gain,
-                   float w) {
-    inverse += w * inverse_gain;
-    shift += w * offset_over_gain;
+  Eigen::Array4f gain, offset;    // C' = gain C + offset, 0-255
+  Eigen::Array4f inverse, shift;  // C = inverse C' - shift
+};
+
+// Sums over the samples of one texel.
+struct ColorSum {
+  // (w C', w)
+  Eigen::Array4f color = Eigen::Array4f::Zero();
+  // Of the way back to the exposures of the samples: w inverse, w shift.
+  Eigen::Array4f inverse = Eigen::Array4f::Zero();
+  Eigen::Array4f shift = Eigen::Array4f::Zero();
+
+  float weight() const { return color[3]; }
+
+  void Add(const Eigen::Array4f& corrected, float w) { color += w * corrected; }
+  void AddExposure(const ExposureLanes& exposure, float w) {
+    inverse += w * exposure.inverse;
+    shift += w * exposure.shift;
   }
 
   // The mean, taken the given share of the way from the common exposure back to
-  // those of its samples: to their weighted mean of (C - offset) / gain.
-  // weight > 0.
+  // those of its samples: to their weighted mean of C. weight() > 0.
   Eigen::Vector3f Mean(float share_of_exposures) const {
-    const Eigen::Array3f mean = rgb / weight;
-    if (!(share_of_exposures > 0)) return mean.matrix();
-    const Eigen::Array3f as_seen = (mean * inverse - shift) / weight;
-    return (mean + share_of_exposures * (as_seen - mean)).matrix();
+    const Eigen::Array4f mean = color / color[3];
+    if (!(share_of_exposures > 0)) return mean.head<3>().matrix();
+    const Eigen::Array4f as_seen = (mean * inverse - shift) / color[3];
+    return (mean + share_of_exposures * (as_seen - mean)).head<3>().matrix();
   }
 };
 
