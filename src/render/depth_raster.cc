@@ -67,49 +67,68 @@ struct InverseDepth {
   }
 };
 
-// The pixels of `row` between the sides of a convex polygon, as [first, last].
-std::pair<int, int> SpanOf(const std::array<Vector2d, 4>& u,
-                           int size,
-                           int row,
-                           int width) {
-  double left = 1e30, right = -1e30;
-  for (int i = 0; i < size; ++i) {
-    const Vector2d *a = &u[i], *b = &u[(i + 1) % size];
-    // One order for both triangles of an edge.
-    if (b->y() < a->y() || (b->y() == a->y() && b->x() < a->x())) {
-      std::swap(a, b);
+// A polygon in the image, ready to be filled.
+class Outline {
+ public:
+  Outline(const std::array<Vector2d, 4>& u, int size) : size_(size) {
+    for (int i = 0; i < size; ++i) {
+      const Vector2d *a = &u[i], *b = &u[(i + 1) % size];
+      // One order for both triangles of an edge: the same numbers.
+      if (b->y() < a->y() || (b->y() == a->y() && b->x() < a->x())) {
+        std::swap(a, b);
+      }
+      const double height = b->y() - a->y();
+      sides_[i] = {a->x(),
+                   a->y(),
+                   b->y(),
+                   height > 0 ? (b->x() - a->x()) / height : b->x() - a->x(),
+                   !(height > 0)};
+      top_ = std::min(top_, a->y());
+      bottom_ = std::max(bottom_, b->y());
     }
-    if (row < a->y() || row > b->y()) continue;
-    const double height = b->y() - a->y();
-    const double x = height > 0
-                         ? a->x() + (row - a->y()) / height * (b->x() - a->x())
-                         : a->x();
-    left = std::min(left, x);
-    right = std::max(right, height > 0 ? x : b->x());
   }
-  return {static_cast<int>(std::ceil(std::clamp(left, 0.0, 1.0 * width))),
-          static_cast<int>(std::floor(std::clamp(right, -1.0, width - 1.0)))};
-}
 
-void Fill(const Polygon& polygon,
+  double top() const { return top_; }
+  double bottom() const { return bottom_; }
+
+  // The pixels of a row between the sides, as [first, last].
+  std::pair<int, int> Span(int row, int width) const {
+    double left = 1e30, right = -1e30;
+    for (int i = 0; i < size_; ++i) {
+      const Side& side = sides_[i];
+      if (row < side.top || row > side.bottom) continue;
+      const double x =
+          side.flat ? side.x : side.x + (row - side.top) * side.slope;
+      left = std::min(left, x);
+      right = std::max(right, side.flat ? side.x + side.slope : x);
+    }
+    return {static_cast<int>(std::ceil(std::clamp(left, 0.0, 1.0 * width))),
+            static_cast<int>(std::floor(std::clamp(right, -1.0, width - 1.0)))};
+  }
+
+ private:
+  // From the upper end; of a flat one `slope` is the length.
+  struct Side {
+    double x, top, bottom, slope;
+    bool flat;
+  };
+  std::array<Side, 4> sides_;
+  int size_;
+  double top_ = 1e30, bottom_ = -1e30;
+};
+
+void Fill(const Outline& outline,
           const InverseDepth& inverse_z,
           const Pinhole& camera,
           std::vector<float>* buffer) {
-  std::array<Vector2d, 4> u;
-  double top = 1e30, bottom = -1e30;
-  for (int i = 0; i < polygon.size; ++i) {
-    u[i] = camera.Project<double>(polygon.corners[i]);
-    top = std::min(top, u[i].y());
-    bottom = std::max(bottom, u[i].y());
-  }
-  const int first =
-      static_cast<int>(std::ceil(std::clamp(top, 0.0, 1.0 * camera.height)));
+  const int first = static_cast<int>(
+      std::ceil(std::clamp(outline.top(), 0.0, 1.0 * camera.height)));
   const int last = static_cast<int>(
-      std::floor(std::clamp(bottom, -1.0, camera.height - 1.0)));
+      std::floor(std::clamp(outline.bottom(), -1.0, camera.height - 1.0)));
   const float du = static_cast<float>(inverse_z.du);
   const float low = inverse_z.low, high = inverse_z.high;
   for (int row = first; row <= last; ++row) {
-    const auto [begin, end] = SpanOf(u, polygon.size, row, camera.width);
+    const auto [begin, end] = outline.Span(row, camera.width);
     float* pixel = buffer->data() + static_cast<size_t>(row) * camera.width;
     const float at_begin = static_cast<float>(
         inverse_z.at_0 + row * inverse_z.dv + begin * inverse_z.du);
@@ -120,6 +139,21 @@ void Fill(const Polygon& polygon,
       pixel[column] = pixel[column] > value ? pixel[column] : value;
     }
   }
+}
+
+// A vertex before the camera: its pixel, and the sides of the image beyond which
+// it lies, as bits.
+struct Seen {
+  Vector2d u;
+  unsigned beyond = 0;
+};
+
+Seen LookAt(const Vector3d& y, const Pinhole& camera) {
+  Seen seen;
+  seen.u = camera.Project<double>(y);
+  seen.beyond = (seen.u.x() < 0) | (seen.u.x() > camera.width - 1) << 1 |
+                (seen.u.y() < 0) << 2 | (seen.u.y() > camera.height - 1) << 3;
+  return seen;
 }
 
 }  // namespace
@@ -134,13 +168,33 @@ std::vector<float> RasterizeDepth(const RayScene& scene,
   }
   std::vector<float> buffer(static_cast<size_t>(camera.width) * camera.height,
                             0.0f);
+  std::vector<Seen> seen(y.size());
+  for (size_t i = 0; i < y.size(); ++i) {
+    if (y[i].z() >= kNear) seen[i] = LookAt(y[i], camera);
+  }
   InverseDepth inverse_z;
   for (const std::array<int, 3>& face : scene.faces()) {
     const std::array<Vector3d, 3> triangle = {
         y[face[0]], y[face[1]], y[face[2]]};
-    const Polygon polygon = ClipNear(triangle);
+    const int num_before = (triangle[0].z() >= kNear) +
+                           (triangle[1].z() >= kNear) +
+                           (triangle[2].z() >= kNear);
+    const bool whole = num_before == 3;
+    if (num_before == 0 ||
+        (whole && (seen[face[0]].beyond & seen[face[1]].beyond &
+                   seen[face[2]].beyond))) {
+      continue;
+    }
+    const Polygon polygon =
+        whole ? Polygon{{triangle[0], triangle[1], triangle[2]}, 3}
+              : ClipNear(triangle);
     if (polygon.size < 3 || !inverse_z.Set(triangle, polygon, camera)) continue;
-    Fill(polygon, inverse_z, camera, &buffer);
+    std::array<Vector2d, 4> u;
+    for (int i = 0; i < polygon.size; ++i) {
+      u[i] = whole ? seen[face[i]].u
+                   : camera.Project<double>(polygon.corners[i]);
+    }
+    Fill(Outline(u, polygon.size), inverse_z, camera, &buffer);
   }
   for (float& z : buffer) z = z > 0 ? 1 / z : 0.0f;
   return buffer;
