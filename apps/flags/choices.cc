@@ -39,6 +39,7 @@ std::vector<FlagChoices> MakeTable() {
       {"pose_iterations", {}, true},
       {"plane_iterations", {}, true},
       {"joint_iterations", {}, true},
+      {"joint_hessian_every", {}, true},
       {"stop_decrease", {}, true},
       {"profile", {"default", "paper"}},
       {"simplify_stop", {"budget", "counts"}},

@@ -92,6 +92,9 @@ DEFINE_int32(plane_iterations,
 DEFINE_int32(joint_iterations,
              SolverConfig().max_joint_iterations,
              "iterations of a joint solve");
+DEFINE_int32(joint_hessian_every,
+             SolverConfig().joint_hessian_every,
+             "joint solves build the Hessian anew every so many iterations");
 
 namespace facet {
 
@@ -134,6 +137,7 @@ void OptimisationOptionsFromFlags(PhotometricOptions* options) {
   p.solver.max_pose_iterations = FLAGS_pose_iterations;
   p.solver.max_plane_iterations = FLAGS_plane_iterations;
   p.solver.max_joint_iterations = FLAGS_joint_iterations;
+  p.solver.joint_hessian_every = FLAGS_joint_hessian_every;
 }
 
 }  // namespace facet

@@ -242,6 +242,7 @@ void CheckNumbers() {
       {"pose_iterations", 1, 10000},
       {"plane_iterations", 1, 10000},
       {"joint_iterations", 1, 10000},
+      {"joint_hessian_every", 1, 10000},
       {"lambda3", 0},
       {"geometry_iterations", 1, 10000},
       {"geometry_band", 0, kMax, true},

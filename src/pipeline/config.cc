@@ -84,6 +84,7 @@ json PhotometricSettings(const ReconstructOptions& o) {
       {"max_plane_iterations", p.solver.max_plane_iterations},
       {"max_pose_iterations", p.solver.max_pose_iterations},
       {"max_joint_iterations", p.solver.max_joint_iterations},
+      {"joint_hessian_every", p.solver.joint_hessian_every},
       {"plane", static_cast<int>(p.formulation.plane)},
       {"manifold", static_cast<int>(p.formulation.manifold)},
       {"sampling", static_cast<int>(p.formulation.sampling)},

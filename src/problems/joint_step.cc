@@ -73,7 +73,7 @@ class JointEvaluation : public ceres::EvaluationCallback {
   // Orthonormal: its transpose turns rows over the tangent into ambient rows,
   // for the manifold of the formulation. (A manifold's own PlusJacobian P would
   // not do: P^T P = I / 4 for the sphere of Ceres 2.1.)
-  const PlaneBasis& basis(size_t plane) const { return basis_[plane]; }
+  const PlaneBasis& basis(size_t plane) const { return hessian_basis_[plane]; }
   const PoseLift& lift(size_t keyframe) const { return lift_[keyframe]; }
 
   double RestResidual() const {
@@ -104,6 +104,21 @@ class JointEvaluation : public ceres::EvaluationCallback {
     }
     const double weight = weights_.texel_weight;
     const double plane_weight = weight * weights_.lambda1;
+    if (num_systems_++ % config_.joint_hessian_every == 0) {
+      FactorHessian(weight, plane_weight);
+    }
+    SetResiduals(problem_,
+                 pass_,
+                 *state_,
+                 hessian_basis_,
+                 weight,
+                 plane_weight,
+                 &system_);
+    has_system_ = true;
+  }
+
+  void FactorHessian(double weight, double plane_weight) {
+    hessian_basis_ = basis_;
     JointHessian hessian =
         config_.joint_method == JointMethod::kExact
             ? ExactHessian(problem_, *state_, basis_, weight)
@@ -117,14 +132,8 @@ class JointEvaluation : public ceres::EvaluationCallback {
                     config_.max_plane_tilt_rad,
                     config_.max_plane_offset_m,
                     &hessian);
-    system_ = FactorJointSystem(problem_,
-                                pass_,
-                                *state_,
-                                std::move(hessian),
-                                basis_,
-                                weight,
-                                plane_weight);
-    has_system_ = true;
+    system_ =
+        FactorJointSystem(problem_, std::move(hessian), basis_, plane_weight);
   }
 
   const TextureProblem& problem_;
@@ -137,7 +146,9 @@ class JointEvaluation : public ceres::EvaluationCallback {
   bool has_pass_ = false, has_system_ = false, use_system_ = false;
   JointPass pass_;
   JointSystem system_;
-  std::vector<PlaneBasis> basis_;
+  std::vector<PlaneBasis> basis_;          // at the point of the moment
+  std::vector<PlaneBasis> hessian_basis_;  // of system_
+  int num_systems_ = 0;
   std::vector<PoseLift> lift_;
 };
 

@@ -84,51 +84,62 @@ void LimitPlaneSteps(const TextureProblem& problem,
 }
 
 JointSystem FactorJointSystem(const TextureProblem& problem,
-                              const JointPass& pass,
-                              const ReconState& state,
                               JointHessian hessian,
                               const std::vector<PlaneBasis>& plane_basis,
-                              double weight,
                               double plane_weight) {
-  const int num_keyframes = problem.NumKeyframes();
   ShiftDiagonal(&hessian.poses);
-  Eigen::VectorXd g(6 * num_keyframes);
-  for (int k = 0; k < num_keyframes; ++k) {
-    g.segment<6>(6 * k) = weight * pass.pose_gradient[k];
-  }
-
   JointSystem system;
   system.planes.resize(plane_basis.size());
   ParallelFor(0, plane_basis.size(), [&](size_t j) {
     JointPlaneRows& rows = system.planes[j];
     JointPlaneBlocks& blocks = hessian.planes[j];
-    const Eigen::Matrix4d moment = plane_weight * problem.moments[j];
-    const Eigen::Map<const Eigen::Vector4d> phi(state.planes.data() +
-                                                kPlaneSize * j);
-    blocks.plane += plane_basis[j].transpose() * moment * plane_basis[j];
-    const Eigen::Vector3d plane_gradient =
-        plane_basis[j].transpose() *
-        (weight * pass.plane_gradient[j] + moment * phi);
+    blocks.plane += plane_basis[j].transpose() *
+                    (plane_weight * problem.moments[j]) * plane_basis[j];
     ShiftDiagonal(&blocks.plane);
     rows.diagonal = UpperFactor(blocks.plane);
-    const auto lower = rows.diagonal.transpose().triangularView<Eigen::Lower>();
     rows.keyframes = std::move(blocks.keyframes);
-    rows.poses = lower.solve(blocks.poses);
-    rows.residual = lower.solve(plane_gradient);
+    rows.poses =
+        rows.diagonal.transpose().triangularView<Eigen::Lower>().solve(
+            blocks.poses);
   });
-  SubtractPlanes(system, num_keyframes, &hessian.poses);
-  for (const JointPlaneRows& rows : system.planes) {
+  SubtractPlanes(system, problem.NumKeyframes(), &hessian.poses);
+  system.poses = UpperFactor(hessian.poses);
+  return system;
+}
+
+void SetResiduals(const TextureProblem& problem,
+                  const JointPass& pass,
+                  const ReconState& state,
+                  const std::vector<PlaneBasis>& plane_basis,
+                  double weight,
+                  double plane_weight,
+                  JointSystem* system) {
+  const int num_keyframes = problem.NumKeyframes();
+  Eigen::VectorXd g(6 * num_keyframes);
+  for (int k = 0; k < num_keyframes; ++k) {
+    g.segment<6>(6 * k) = weight * pass.pose_gradient[k];
+  }
+  system->explained = 0;
+  for (size_t j = 0; j < system->planes.size(); ++j) {
+    JointPlaneRows& rows = system->planes[j];
+    const Eigen::Map<const Eigen::Vector4d> phi(state.planes.data() +
+                                                kPlaneSize * j);
+    const Eigen::Vector3d plane_gradient =
+        plane_basis[j].transpose() *
+        (weight * pass.plane_gradient[j] +
+         plane_weight * problem.moments[j] * phi);
+    rows.residual =
+        rows.diagonal.transpose().triangularView<Eigen::Lower>().solve(
+            plane_gradient);
     for (size_t a = 0; a < rows.keyframes.size(); ++a) {
       g.segment<6>(6 * rows.keyframes[a]) -=
           rows.poses.middleCols<6>(6 * a).transpose() * rows.residual;
     }
-    system.explained += rows.residual.squaredNorm();
+    system->explained += rows.residual.squaredNorm();
   }
-  system.poses = UpperFactor(hessian.poses);
-  system.pose_residual =
-      system.poses.transpose().triangularView<Eigen::Lower>().solve(g);
-  system.explained += system.pose_residual.squaredNorm();
-  return system;
+  system->pose_residual =
+      system->poses.transpose().triangularView<Eigen::Lower>().solve(g);
+  system->explained += system->pose_residual.squaredNorm();
 }
 
 }  // namespace facet

@@ -51,17 +51,25 @@ void LimitPlaneSteps(const TextureProblem& problem,
                      double max_offset_m,
                      JointHessian* hessian);
 
-// From the `hessian` of E_c and the gradients of `pass`, which `weight`
-// multiplies (texel area weight; the Hessian has it already). With planes,
-// lambda1 E_p is part of the system (`plane_weight` times its moments): alone,
-// E_c leaves planes without texture undetermined. `plane_basis` as for the
-// Hessian.
+// The rows R of a Hessian, whose factor they are. With planes, lambda1 E_p is
+// part of the system (`plane_weight` times its moments): alone, E_c leaves planes
+// without texture undetermined. `plane_basis` as for the Hessian. Residuals are
+// not set.
 JointSystem FactorJointSystem(const TextureProblem& problem,
-                              const JointPass& pass,
-                              const ReconState& state,
                               JointHessian hessian,
                               const std::vector<PlaneBasis>& plane_basis,
-                              double weight,
                               double plane_weight);
+
+// Sets the residuals R^-T g with the gradient g of `pass`, which `weight`
+// multiplies (texel area weight), and of lambda1 E_p: the system then has the
+// exact gradient, whatever point its Hessian is from. `plane_basis` is that of
+// the Hessian.
+void SetResiduals(const TextureProblem& problem,
+                  const JointPass& pass,
+                  const ReconState& state,
+                  const std::vector<PlaneBasis>& plane_basis,
+                  double weight,
+                  double plane_weight,
+                  JointSystem* system);
 
 }  // namespace facet

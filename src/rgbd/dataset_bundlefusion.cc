@@ -105,6 +105,15 @@ class BundleFusionSequence : public RgbdSequence {
     return color;
   }
 
+  cv::Mat LoadLuma(int frame_idx) const override {
+    const std::string& file = frames_[frame_idx].color_path;
+    const cv::Mat bytes = ReadLumaImage(file);
+    CheckSize(bytes, calibration_.color, file);
+    cv::Mat luma;
+    bytes.convertTo(luma, CV_32F, 1.0 / 255);
+    return luma;
+  }
+
   cv::Mat LoadDepth(int frame_idx) const override {
     return DepthWithin(frame_idx, options_.min_depth_m, options_.max_depth_m);
   }

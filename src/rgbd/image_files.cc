@@ -53,6 +53,10 @@ cv::Mat ReadColorImage(const std::string& path) {
   return rgb;
 }
 
+cv::Mat ReadLumaImage(const std::string& path) {
+  return Decode(path, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
+}
+
 cv::Mat ReadRawDepthImage(const std::string& path) {
   cv::Mat raw = Decode(path, cv::IMREAD_UNCHANGED);
   if (raw.type() != CV_16UC1) {

@@ -14,6 +14,9 @@ namespace facet {
 // file: missing, not an image, truncated.
 cv::Mat ReadColorImage(const std::string& path);
 
+// Its luma as CV_8UC1, of a JPEG without decoding the colours.
+cv::Mat ReadLumaImage(const std::string& path);
+
 // 16-bit grey PNG or PGM (big-endian) as CV_16U, any size. Throws InputError
 // naming the file: missing, not an image, truncated, not 16-bit grey.
 cv::Mat ReadRawDepthImage(const std::string& path);

@@ -28,7 +28,7 @@ void CheckOptions(const KeyframeOptions& options) {
 }
 
 double FrameBlur(const RgbdSequence& sequence, int frame_idx) {
-  const cv::Mat luma = LumaFromRgb(sequence.LoadColor(frame_idx));
+  const cv::Mat luma = sequence.LoadLuma(frame_idx);
   return CreteBlur({luma.ptr<float>(),
                     luma.cols,
                     luma.rows,

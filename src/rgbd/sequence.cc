@@ -9,6 +9,10 @@
 
 namespace facet {
 
+cv::Mat RgbdSequence::LoadLuma(int frame_idx) const {
+  return LumaFromRgb(LoadColor(frame_idx));
+}
+
 Pose RgbdSequence::PoseFileFromColorCam(
     const Pose& color_cam_from_world) const {
   if (options_.pose_camera == PoseCamera::kColor) {

@@ -118,6 +118,17 @@ TEST(Sequence, ColorIsRgb) {
   EXPECT_NEAR(pixel[2], 10, 3);
 }
 
+// The luma that is decoded without the colours is that of the colours, to the
+// rounding of 8 bits. Breaks if another channel is taken for it.
+TEST(Sequence, LumaIsThatOfTheColours) {
+  const TinySequence files;
+  const auto sequence = Open(files);
+  const cv::Mat luma = sequence->LoadLuma(0);
+  ASSERT_EQ(luma.type(), CV_32F);
+  EXPECT_LT(cv::norm(luma, LumaFromRgb(sequence->LoadColor(0)), cv::NORM_INF),
+            2.5 / 255);
+}
+
 // 0, 65535 and values outside the range are missing; the range's ends are not.
 TEST(Sequence, DepthIsMetresAndMissingIsZero) {
   const TinySequence files;
