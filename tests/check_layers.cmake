@@ -7,7 +7,7 @@ set(may_geometry util geometry)
 set(may_mesh util geometry mesh)
 set(may_rgbd util geometry rgbd)
 set(may_render util geometry mesh render)
-set(may_texture util geometry mesh rgbd render texture)
+set(may_texture util geometry mesh rgbd render costs texture)
 set(may_costs util geometry costs)
 set(may_problems util geometry mesh rgbd render texture costs problems)
 set(may_terms util geometry texture costs problems terms)
@@ -17,7 +17,7 @@ set(may_synth util geometry mesh rgbd render synth)
 set(may_pipeline util geometry mesh rgbd render texture costs problems terms
                  schedule eval synth pipeline)
 set(may_ablate util ablate)
-set(layers util geometry mesh rgbd render texture costs problems terms schedule
+set(layers util geometry mesh rgbd render costs texture problems terms schedule
            eval synth pipeline ablate)
 
 foreach(layer IN LISTS layers)

@@ -193,9 +193,10 @@ DEFINE_double(bake_local_exposure,
               "final colours: 0 = one exposure everywhere, 1 = that of the "
               "images that see a texel");
 DEFINE_string(bake_sampler, "bilinear", "final colours: bilinear or bicubic");
-DEFINE_int32(bake_visibility_px,
-             2,
-             "final colours: one visibility test for a square of so many texels");
+DEFINE_int32(
+    bake_visibility_px,
+    BakeOptions().visibility_px,
+    "final colours: one visibility test for a square of so many texels");
 
 namespace facet {
 namespace {

@@ -18,8 +18,8 @@ namespace facet {
 
 // Relative diagonal shift of J^T J before factoring. The Gram matrix is summed
 // from float lanes and may be indefinite by rounding of some 1e-7; 5e-7 of the
-// diagonal keeps the factor meaningful, leaves cost and gradient exact and changes
-// the step, also of ill-conditioned poses, by a few 1e-5.
+// diagonal keeps the factor meaningful, leaves cost and gradient exact and
+// changes the step, also of ill-conditioned poses, by a few 1e-5.
 inline constexpr double kGramShift = 5e-7;
 
 // Compresses `gram`, the (n+1) x (n+1) upper triangle (row-major) of

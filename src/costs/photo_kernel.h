@@ -72,7 +72,7 @@ struct PhotoViewSums {
 
 // Where sample_rgb writes.
 struct PhotoColors {
-  float *u, *v;                // [px]
+  float *u, *v;               // [px]
   float *red, *green, *blue;  // 0-255
 };
 
@@ -122,8 +122,8 @@ struct PhotoKernel {
                           PhotoCounts* counts);
 
   // As `sample`, but colours (0-255) of an image of 8-bit RGB pixels, rows
-  // `row_bytes` apart, in place of frame.image; bilinear, frozen. Also the pixel
-  // (u, v) = F(pi(R q + t)), which may lie outside.
+  // `row_bytes` apart, in place of frame.image; bilinear, frozen. Also the
+  // pixel (u, v) = F(pi(R q + t)), which may lie outside.
   void (*sample_rgb)(const PhotoFrame& frame,
                      const uint8_t* rgb,
                      ptrdiff_t row_bytes,

@@ -156,8 +156,8 @@ void SampleRgb(const PhotoFrame& frame,
                  w11 * Red(p11[i]);
       green.v[i] = w00 * Green(p00[i]) + w10 * Green(p10[i]) +
                    w01 * Green(p01[i]) + w11 * Green(p11[i]);
-      blue.v[i] = w00 * Blue(p00[i]) + w10 * Blue(p10[i]) +
-                  w01 * Blue(p01[i]) + w11 * Blue(p11[i]);
+      blue.v[i] = w00 * Blue(p00[i]) + w10 * Blue(p10[i]) + w01 * Blue(p01[i]) +
+                  w11 * Blue(p11[i]);
     }
     for (int i = 0; i < m; ++i) {
       out.u[begin + i] = c.u.v[i];

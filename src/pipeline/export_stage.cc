@@ -153,9 +153,7 @@ void WritePreviews(const ReconstructOptions& options,
       dir,
       "before",
       sampled,
-      MakeModel(input,
-                start,
-                baker.BakeAs(before, SeenFaces(start, sampled))));
+      MakeModel(input, start, baker.BakeAs(before, SeenFaces(start, sampled))));
 }
 
 }  // namespace

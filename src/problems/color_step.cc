@@ -31,15 +31,11 @@ void SolveColors(const TextureProblem& problem, ReconState* state) {
   const std::vector<PhotoChannel> channels =
       MakePhotoChannels(problem, *state, PointsAt::kPlane);
   ForEachTile(
-      problem,
-      channels,
-      {},
-      [&](size_t t, std::vector<TileSamples>* samples) {
+      problem, channels, {}, [&](size_t t, std::vector<TileSamples>* samples) {
         const TexelTile& tile = problem.tiles[t];
         float* colors = state->colors.data();
         for (TileSamples& channel : *samples) {
-          KeepBetterColors(
-              problem, tile, colors + tile.texel_begin, &channel);
+          KeepBetterColors(problem, tile, colors + tile.texel_begin, &channel);
           for (size_t i = tile.texel_begin; i < tile.texel_end; ++i) {
             const float mean = channel.mean[i - tile.texel_begin];
             if (problem.views[i] > 0 && !std::isnan(mean)) colors[i] = mean;

@@ -99,9 +99,7 @@ void AddSamples(const ExactScene& scene,
   h->selfadjointView<Eigen::Upper>().rankUpdate(sums, -channel_weight);
 }
 
-Eigen::MatrixXd TileHessian(const ExactScene& scene,
-                            size_t t,
-                            TileSlab* slab) {
+Eigen::MatrixXd TileHessian(const ExactScene& scene, size_t t, TileSlab* slab) {
   const TextureProblem& problem = scene.problem;
   const TexelTile& tile = problem.tiles[t];
   const PlaneFrame frame(scene.state.planes.data() + kPlaneSize * tile.plane);

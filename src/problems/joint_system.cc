@@ -98,9 +98,8 @@ JointSystem FactorJointSystem(const TextureProblem& problem,
     ShiftDiagonal(&blocks.plane);
     rows.diagonal = UpperFactor(blocks.plane);
     rows.keyframes = std::move(blocks.keyframes);
-    rows.poses =
-        rows.diagonal.transpose().triangularView<Eigen::Lower>().solve(
-            blocks.poses);
+    rows.poses = rows.diagonal.transpose().triangularView<Eigen::Lower>().solve(
+        blocks.poses);
   });
   SubtractPlanes(system, problem.NumKeyframes(), &hessian.poses);
   system.poses = UpperFactor(hessian.poses);
@@ -125,9 +124,8 @@ void SetResiduals(const TextureProblem& problem,
     const Eigen::Map<const Eigen::Vector4d> phi(state.planes.data() +
                                                 kPlaneSize * j);
     const Eigen::Vector3d plane_gradient =
-        plane_basis[j].transpose() *
-        (weight * pass.plane_gradient[j] +
-         plane_weight * problem.moments[j] * phi);
+        plane_basis[j].transpose() * (weight * pass.plane_gradient[j] +
+                                      plane_weight * problem.moments[j] * phi);
     rows.residual =
         rows.diagonal.transpose().triangularView<Eigen::Lower>().solve(
             plane_gradient);

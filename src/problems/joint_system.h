@@ -52,9 +52,9 @@ void LimitPlaneSteps(const TextureProblem& problem,
                      JointHessian* hessian);
 
 // The rows R of a Hessian, whose factor they are. With planes, lambda1 E_p is
-// part of the system (`plane_weight` times its moments): alone, E_c leaves planes
-// without texture undetermined. `plane_basis` as for the Hessian. Residuals are
-// not set.
+// part of the system (`plane_weight` times its moments): alone, E_c leaves
+// planes without texture undetermined. `plane_basis` as for the Hessian.
+// Residuals are not set.
 JointSystem FactorJointSystem(const TextureProblem& problem,
                               JointHessian hessian,
                               const std::vector<PlaneBasis>& plane_basis,

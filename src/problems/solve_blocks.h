@@ -51,8 +51,8 @@ struct SolverConfig {
   // Joint solve: kappa and eta of problems/joint_pass.h, and the largest
   // trust-region radius, which with the pose prior holds soft gauge directions.
   int max_joint_iterations = 5;
-  // The Hessian is built and factored anew at every so many points; the gradient
-  // always is. >= 1.
+  // The Hessian is built and factored anew at every so many points; the
+  // gradient always is. >= 1.
   int joint_hessian_every = 3;
   double joint_common_share = 0.99;
   double joint_own_share = 0.1;

@@ -347,8 +347,7 @@ PhotoChannel MakePhotoChannel(const TextureProblem& problem,
                               bool raw,
                               int channel) {
   PhotoChannel result;
-  result.frames =
-      MakePhotoFrames(problem, state, raw, &result.warps, channel);
+  result.frames = MakePhotoFrames(problem, state, raw, &result.warps, channel);
   result.points = points == PointsAt::kPlane
                       ? PlanePoints(problem, state, channel)
                       : MeshPoints(problem, state, channel);

@@ -68,7 +68,7 @@ struct TextureProblem {
   TexelSet texels;
   Observations observations;
   std::vector<TexelTile> tiles;
-  std::vector<TileSegment> segments;     // by tile, ascending keyframe
+  std::vector<TileSegment> segments;  // by tile, ascending keyframe
   // The segments of keyframe k by ascending tile: indices
   // keyframe_segments[keyframe_segment_begin[k] .. [k + 1]).
   std::vector<uint32_t> keyframe_segments;

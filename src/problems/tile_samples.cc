@@ -144,10 +144,9 @@ void TileSlab::Reweight(const TexelTile& tile,
   ForEachSample(problem_, tile, *samples, [&](size_t, size_t texel, size_t i) {
     const double r =
         static_cast<double>(samples->intensity[i]) - samples->mean[texel];
-    weight[i] = std::isnan(r)
-                    ? 0.0f
-                    : static_cast<float>(LossWeight(
-                          samples->loss, samples->loss_scale, r * r));
+    weight[i] = std::isnan(r) ? 0.0f
+                              : static_cast<float>(LossWeight(
+                                    samples->loss, samples->loss_scale, r * r));
   });
   samples->weight = weight;
 }

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 //
 // All samples of one tile: what the colour step, the energy and the joint solve
-// are made of. Samples are taken keyframe by keyframe, so that an image stays in
-// the cache, and used tile by tile; slabs of tiles bound what is between.
+// are made of. Samples are taken keyframe by keyframe, so that an image stays
+// in the cache, and used tile by tile; slabs of tiles bound what is between.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +15,8 @@
 
 namespace facet {
 
-// The samples of a tile, one an observation. Arrays are those of the slab: sample
-// i of segment s is at offset[s - tile.segment_begin] + i.
+// The samples of a tile, one an observation. Arrays are those of the slab:
+// sample i of segment s is at offset[s - tile.segment_begin] + i.
 struct TileSamples {
   std::vector<size_t> offset;
   const float* intensity = nullptr;
@@ -49,8 +49,8 @@ class TileSlab {
   // Samples the tiles [tile_begin, tile_end), on many threads.
   void Sample(size_t tile_begin, size_t tile_end);
 
-  // Of one of these tiles. Valid until the next Sample(). May run on many threads
-  // for different tiles.
+  // Of one of these tiles. Valid until the next Sample(). May run on many
+  // threads for different tiles.
   TileSamples Of(size_t tile, size_t channel);
 
   // Of the first channel, over all that was sampled.

@@ -141,8 +141,8 @@ void Fill(const Outline& outline,
   }
 }
 
-// A vertex before the camera: its pixel, and the sides of the image beyond which
-// it lies, as bits.
+// A vertex before the camera: its pixel, and the sides of the image beyond
+// which it lies, as bits.
 struct Seen {
   Vector2d u;
   unsigned beyond = 0;
@@ -191,8 +191,8 @@ std::vector<float> RasterizeDepth(const RayScene& scene,
     if (polygon.size < 3 || !inverse_z.Set(triangle, polygon, camera)) continue;
     std::array<Vector2d, 4> u;
     for (int i = 0; i < polygon.size; ++i) {
-      u[i] = whole ? seen[face[i]].u
-                   : camera.Project<double>(polygon.corners[i]);
+      u[i] =
+          whole ? seen[face[i]].u : camera.Project<double>(polygon.corners[i]);
     }
     Fill(Outline(u, polygon.size), inverse_z, camera, &buffer);
   }

@@ -62,8 +62,8 @@ class RgbdSequence {
   // size.
   virtual cv::Mat LoadColor(int frame_idx) const = 0;
 
-  // Luma of the colour image, CV_32F in [0, 1], to a grey value or so: enough to
-  // measure blur, and faster than by colours. Throws as LoadColor.
+  // Luma of the colour image, CV_32F in [0, 1], to a grey value or so: enough
+  // to measure blur, and faster than by colours. Throws as LoadColor.
   virtual cv::Mat LoadLuma(int frame_idx) const;
 
   // Depth in metres, CV_32F, size of calibration().depth; missing = 0

@@ -55,8 +55,8 @@ struct BakeOptions {
   // from those of the milder verdict of FrameView::Test.
   bool mild_fallback = true;
   BakeSampler sampler = BakeSampler::kBilinear;
-  // Visibility is tested at one texel of a square of so many; a texel is smaller
-  // than a pixel of the depth image that decides. 1 = at every texel.
+  // Visibility is tested at one texel of a square of so many; a texel is
+  // smaller than a pixel of the depth image that decides. 1 = at every texel.
   int visibility_px = 2;
   int ring_px = 4;      // gutter coloured from the images; the rest is copied
   bool inpaint = true;  // fill unseen texels; else they stay white

@@ -60,10 +60,10 @@ struct ColorSum {
   }
 };
 
-// Sample i of view v of n texels is samples[n v + i]. Sets the weight of samples
-// to 0 whose luma (0-1) is farther than `limit` from
-// the weighted median of their texel. Returns how many of the first `owned`
-// texels these were.
+// Sample i of view v of n texels is samples[n v + i]. Sets the weight of
+// samples to 0 whose luma (0-1) is farther than `limit` from the weighted
+// median of their texel. Returns how many of the first `owned` texels these
+// were.
 size_t DropOutliers(size_t n,
                     size_t owned,
                     size_t num_views,

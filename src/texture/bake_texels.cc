@@ -62,10 +62,9 @@ int LargestFace(const Atlas& atlas, const Chart& chart) {
     const Vector2d a = uv[1] - uv[0], b = uv[2] - uv[0];
     return std::abs(a.x() * b.y() - a.y() * b.x());
   };
-  return *std::max_element(
-      chart.faces.begin(), chart.faces.end(), [&](int a, int b) {
-        return area(a) < area(b);
-      });
+  return *std::max_element(chart.faces.begin(),
+                           chart.faces.end(),
+                           [&](int a, int b) { return area(a) < area(b); });
 }
 
 class ChartTexelizer {
@@ -153,7 +152,7 @@ class ChartTexelizer {
     uint32_t& first = first_of_square_[row * kBakeTilePx + column];
     if (first == kNone) first = self;
     return chart_.steep && first != self && texels_.face[first] != face ? self
-                                                                       : first;
+                                                                        : first;
   }
 
   // `root` is an owned texel.

@@ -17,8 +17,8 @@ namespace facet {
 
 inline constexpr int kBakeTilePx = 32;
 
-// Texels of up to kBakeTilePx x kBakeTilePx px of one chart: [begin, owned_end) lie in a face;
-// [owned_end, end) are gutter texels that follow one of them.
+// Texels of up to kBakeTilePx x kBakeTilePx px of one chart: [begin, owned_end)
+// lie in a face; [owned_end, end) are gutter texels that follow one of them.
 struct BakeTile {
   int chart = 0;
   uint32_t begin = 0, owned_end = 0, end = 0;
@@ -44,8 +44,9 @@ struct BakeTexels {
 // built); q = p projected onto its plane, for steep charts q = p. A gutter
 // texel up to `ring_px` (8-neighbour steps) away from an owned one continues
 // the chart in its plane: q = q_source + h (dx e1 + dy e2). A chart without any
-// owned texel gets one, at the centroid of its largest face. On steep charts only
-// texels of one face share a source. All but p and q depends on the atlas only.
+// owned texel gets one, at the centroid of its largest face. On steep charts
+// only texels of one face share a source. All but p and q depends on the atlas
+// only.
 BakeTexels MakeBakeTexels(const TriMesh& mesh,
                           const std::vector<Plane>& planes,
                           const Atlas& atlas,

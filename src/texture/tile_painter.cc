@@ -169,28 +169,22 @@ float TilePainter::Powers(const View& view,
   const float cosine = std::abs(normal.dot((view.center - q).normalized()));
   const PhotoFrame& f = view.frame;
   const float z = f.r[6] * q.x() + f.r[7] * q.y() + f.r[8] * q.z() + f.t[2];
-  return std::exp2(static_cast<float>(options_.angle_power) *
-                       std::log2(std::max(cosine, 1e-3f)) -
-                   static_cast<float>(options_.depth_power) *
-                       std::log2(std::max(z, 1e-3f)) +
-                   static_cast<float>(options_.sharpness_power) *
-                       std::log2(view.sharpness));
+  return std::exp2(
+      static_cast<float>(options_.angle_power) *
+          std::log2(std::max(cosine, 1e-3f)) -
+      static_cast<float>(options_.depth_power) * std::log2(std::max(z, 1e-3f)) +
+      static_cast<float>(options_.sharpness_power) * std::log2(view.sharpness));
 }
 
-float TilePainter::WeightAt(const View& view,
-                            const TileWork& work,
-                            size_t i,
-                            float u,
-                            float v) const {
+float TilePainter::WeightAt(
+    const View& view, const TileWork& work, size_t i, float u, float v) const {
   float weight = 1;
   if (options_.border_feather_px > 0) {
-    const float border = std::min(
-        std::min(u, static_cast<float>(camera_.width - 1) - u),
-        std::min(v, static_cast<float>(camera_.height - 1) - v));
-    weight =
-        std::clamp(border / static_cast<float>(options_.border_feather_px),
-                   1e-3f,
-                   1.0f);
+    const float border =
+        std::min(std::min(u, static_cast<float>(camera_.width - 1) - u),
+                 std::min(v, static_cast<float>(camera_.height - 1) - v));
+    weight = std::clamp(
+        border / static_cast<float>(options_.border_feather_px), 1e-3f, 1.0f);
   }
   if (has_powers_) weight *= Powers(view, work.tile.begin + i, work.chart);
   if (options_.best_view_power == 1) return weight;
@@ -288,8 +282,7 @@ void TilePainter::SumRobustly(TileWork* work, BakeReport* report) const {
 
 void TilePainter::PaintTile(size_t t) {
   const BakeTile& tile = texels_.tiles[t];
-  TileWork work(
-      tile, texels_, atlas_.charts[tile.chart], sights_.ViewsOf(t));
+  TileWork work(tile, texels_, atlas_.charts[tile.chart], sights_.ViewsOf(t));
   BakeReport& report = reports_[t];
   if (options_.robust_luma > 0) {
     SumRobustly(&work, &report);

@@ -45,11 +45,8 @@ class TilePainter {
                 const std::vector<char>& only_faces) const;
   BakeReport Total() const;
   float Powers(const View& view, size_t texel, const Chart& chart) const;
-  float WeightAt(const View& view,
-                 const TileWork& work,
-                 size_t i,
-                 float u,
-                 float v) const;
+  float WeightAt(
+      const View& view, const TileWork& work, size_t i, float u, float v) const;
   size_t FindSeen(const TileSights::View& sight, TileWork* work) const;
   template <typename Use>
   void LookUp(const TileSights::View& sight,

@@ -44,7 +44,9 @@ class Looker {
   }
 
   // Sets the bits of a tile. Returns whether there are any.
-  bool Look(const FrameView& view, const BakeTile& tile, uint64_t* words) const {
+  bool Look(const FrameView& view,
+            const BakeTile& tile,
+            uint64_t* words) const {
     const size_t num_words = TileSights::NumWords(tile);
     const Chart& chart = atlas_.charts[tile.chart];
     Vector3f normal = NormalOf(chart, tile.begin);

@@ -100,8 +100,7 @@ TEST(Formulations, ReferenceAndCompressedTakeTheSameStep) {
       for (const auto member :
            {&ReconState::planes, &ReconState::poses, &ReconState::warps}) {
         const double step = Distance(start.state.*member, reference.*member);
-        EXPECT_LE(Distance(compressed.*member, reference.*member),
-                  1e-4 * step)
+        EXPECT_LE(Distance(compressed.*member, reference.*member), 1e-4 * step)
             << BlockSetName(blocks) << " " << static_cast<int>(sampling) << " "
             << Distance(compressed.*member, reference.*member) / step;
       }

@@ -282,7 +282,9 @@ TEST(Bake, TexelsOfASquareShareTheVerdictOfTheFirst) {
   const cv::Mat shared = wall.report.unseen_mask[0];
   const Chart& chart = wall.atlas.charts[0];
   const std::vector<int> owners = ChartOwners(wall.atlas, 0);
-  const auto owned = [&](int x, int y) { return owners[y * chart.width + x] >= 0; };
+  const auto owned = [&](int x, int y) {
+    return owners[y * chart.width + x] >= 0;
+  };
   int differ = 0;
   for (int y = 0; y < chart.height; ++y) {
     for (int x = 0; x < chart.width; ++x) {
@@ -330,10 +332,8 @@ TEST(Bake, AnotherStateUsesTheSameKeyframes) {
                                  wall.options);
   const cv::Mat page = baker.Bake()[0];
   EXPECT_EQ(cv::norm(page, moved_baker.BakeAs(state)[0], cv::NORM_INF), 0);
-  EXPECT_EQ(cv::norm(moved_baker.Bake()[0],
-                     baker.BakeAs(other)[0],
-                     cv::NORM_INF),
-            0);
+  EXPECT_EQ(
+      cv::norm(moved_baker.Bake()[0], baker.BakeAs(other)[0], cv::NORM_INF), 0);
   EXPECT_GT(cv::norm(page, baker.BakeAs(other)[0], cv::NORM_INF), 3);
 }
 
