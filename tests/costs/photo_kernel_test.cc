@@ -59,6 +59,64 @@ TEST_P(PhotoKernelTest, SamplesLikeTheReference) {
   }
 }
 
+// Colours are those of the double sampler, channel by channel, also at the last
+// pixel, behind which the buffer ends (asan), and (u, v) is the warped pixel.
+TEST_P(PhotoKernelTest, ColoursAreThoseOfTheReference) {
+  Random random(9);
+  PhotoScene s = MakePhotoScene(333, &random);
+  TestImage channels[3];
+  std::vector<uint8_t> rgb;
+  for (int i = 0; i < s.camera.width * s.camera.height; ++i) {
+    for (TestImage& channel : channels) {
+      rgb.push_back(static_cast<uint8_t>(random.Index(256)));
+      channel.pixels.push_back(rgb.back());
+      channel.width = s.camera.width;
+      channel.height = s.camera.height;
+    }
+  }
+  rgb.shrink_to_fit();
+  const std::vector<float> warp = Floats(s.warp);
+  PhotoFrame frame = s.Frame(channels[0]);
+  frame.warp = warp.data();
+  const size_t n = s.ids.size();
+  std::vector<float> out(5 * n);
+  float* at = out.data();
+  kernel_->sample_rgb(frame,
+                      rgb.data(),
+                      3 * frame.width,
+                      s.plane_texels.data(),
+                      s.ids.data(),
+                      n,
+                      {at, at + n, at + 2 * n, at + 3 * n, at + 4 * n});
+  for (size_t i = 0; i < n; ++i) {
+    const Eigen::Vector2d u = s.lattice.Apply(s.warp.data(), s.PixelOf(i));
+    EXPECT_NEAR(out[i], u.x(), 1e-3);
+    EXPECT_NEAR(out[n + i], u.y(), 1e-3);
+    for (size_t k = 0; k < 3; ++k) {
+      EXPECT_NEAR(out[(2 + k) * n + i],
+                  SampleBilinear(channels[k].view(), u.x(), u.y()).value,
+                  0.05);
+    }
+  }
+  // The lower right corner and beyond.
+  s.pose = {0, 0, 0, 1, 0, 0, 0};
+  s.origin.setZero();
+  const Eigen::Vector3f x = (2 * s.camera.Unproject(170, 130)).cast<float>();
+  const PhotoTexel corner = {x.x(), x.y(), x.z(), 0};
+  const uint32_t id = 0;
+  float pixel[5];
+  kernel_->sample_rgb(s.Frame(channels[0]),
+                      rgb.data(),
+                      3 * frame.width,
+                      &corner,
+                      &id,
+                      1,
+                      {pixel, pixel + 1, pixel + 2, pixel + 3, pixel + 4});
+  EXPECT_NEAR(pixel[0], 170, 1e-3);
+  for (size_t k = 0; k < 3; ++k)
+    EXPECT_EQ(pixel[2 + k], rgb[rgb.size() - 3 + k]);
+}
+
 // Points outside the image read its border and are counted, points behind the
 // camera too; none is dropped. Breaks if the padding of a chunk is counted.
 TEST_P(PhotoKernelTest, CountsWhatIsOutsideOrBehind) {

@@ -175,6 +175,33 @@ TEST_F(JointStep, OnePhaseLowersTheObjectiveMoreThanAnAlternationRound) {
   EXPECT_LT(summary.after.Objective(), current.Objective());
 }
 
+// A Hessian that is kept for the whole solve changes the way, not the descent:
+// the gradient is that of every point. Breaks if residuals are kept with it.
+TEST_F(JointStep, AnOldHessianComesToTheSameEnergy) {
+  const EnergyTerms before = EvaluateEnergy(scene_.problem, weights_, state_);
+  double objective[2];
+  for (const int every : {1, 1000}) {
+    SolverConfig config;
+    config.remove_common_motion = false;
+    config.joint_hessian_every = every;
+    config.max_joint_iterations = 15;
+    SolverMemory memory;
+    ReconState joint = state_;
+    const PhaseSummary summary = SolveBlocks(scene_.problem,
+                                             weights_,
+                                             kJoint | kPlanes,
+                                             config,
+                                             before,
+                                             &memory,
+                                             &joint);
+    EXPECT_TRUE(summary.accepted);
+    objective[every > 1] = summary.after.Objective();
+  }
+  const double gain = before.Objective() - objective[0];
+  EXPECT_GT(gain, 0.1 * before.Objective());
+  EXPECT_NEAR(objective[1], objective[0], 0.02 * gain);
+}
+
 // Breaks when the joint solve stops at a wrong point.
 TEST_F(JointStep, RecoversPoses) {
   state_ = scene_.truth;
