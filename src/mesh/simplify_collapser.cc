@@ -157,8 +157,6 @@ void Collapser::Impl::Execute(const Collapse& collapse) {
     --cluster_faces[label[kernel.face_handle(side).idx()]];
     --num_faces;
   }
-  const uint32_t next_version =
-      std::max(version[from.idx()], version[to.idx()]) + 1;
   kernel.collapse(h);
   ++num_collapses;
   for (int i = 0; i < num_merged; ++i) {
@@ -169,7 +167,6 @@ void Collapser::Impl::Execute(const Collapse& collapse) {
   position[to.idx()] = collapse.target;
   quadric[to.idx()] += quadric[from.idx()];
   weight[to.idx()] += weight[from.idx()];
-  version[to.idx()] = next_version;
   int degree = 0;
   for (const EdgeHandle e : kernel.ve_range(to)) degree += border[e.idx()];
   border_degree[to.idx()] = degree;
@@ -183,7 +180,12 @@ void Collapser::Impl::Execute(const Collapse& collapse) {
 
 void Collapser::Impl::Push(EdgeHandle e) {
   rejected[e.idx()] = 0;
-  if (MayCollapse(e)) queue.push({Plan(e, 0).cost, e.idx(), 0, Stamp(e)});
+  next_choice[e.idx()] = 0;
+  if (MayCollapse(e)) {
+    queue.Set(e.idx(), Plan(e, 0).cost);
+  } else {
+    queue.Remove(e.idx());
+  }
 }
 
 // After a collapse: the edges of the kept vertex have new costs, and edges
@@ -201,7 +203,7 @@ void Collapser::Impl::Requeue(VertexHandle kept) {
 
 void Collapser::Impl::Fill(int classes) {
   active = classes;
-  queue = {};
+  queue = IndexedHeap(kernel.n_edges());
   for (const EdgeHandle e : kernel.edges()) Push(e);  // skips deleted edges
 }
 
@@ -209,21 +211,25 @@ void Collapser::Impl::Fill(int classes) {
 // until done() or the queue is empty.
 template <typename Wanted, typename Done>
 void Collapser::Impl::Run(const Wanted& wanted, const Done& done) {
-  while (!queue.empty() && !done()) {
-    const Candidate top = queue.top();
-    queue.pop();
-    const EdgeHandle e(top.edge);
-    if (kernel.status(e).deleted() || Stamp(e) != top.stamp) continue;
-    const Collapse plan = Plan(e, top.choice);
-    if (!(ErrorOf(plan) <= options.max_error_m) || !wanted(e, plan)) continue;
-    if (!LinkAllows(plan)) {
+  while (!queue.Empty() && !done()) {
+    const EdgeHandle e(queue.Top());
+    if (kernel.status(e).deleted()) {
+      queue.Remove(e.idx());
+      continue;
+    }
+    const Collapse plan = Plan(e, next_choice[e.idx()]);
+    if (!(ErrorOf(plan) <= options.max_error_m) || !wanted(e, plan)) {
+      queue.Remove(e.idx());
+    } else if (!LinkAllows(plan)) {
+      queue.Remove(e.idx());
       rejected[e.idx()] = 1;
     } else if (ShapeAllows(plan)) {
+      queue.Remove(e.idx());
       Execute(plan);
-    } else if (top.choice < plan.last_choice) {
-      const int choice = top.choice + 1;
-      queue.push({Plan(e, choice).cost, top.edge, choice, top.stamp});
+    } else if (next_choice[e.idx()] < plan.last_choice) {
+      queue.Set(e.idx(), Plan(e, ++next_choice[e.idx()]).cost);
     } else {
+      queue.Remove(e.idx());
       rejected[e.idx()] = 1;
     }
   }

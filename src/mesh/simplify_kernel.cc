@@ -43,7 +43,7 @@ void Collapser::Impl::MarkBorders() {
   border.assign(kernel.n_edges(), 0);
   rejected.assign(kernel.n_edges(), 0);
   border_degree.assign(kernel.n_vertices(), 0);
-  version.assign(kernel.n_vertices(), 0);
+  next_choice.assign(kernel.n_edges(), 0);
   for (const EdgeHandle e : kernel.edges()) {
     const HalfedgeHandle h = kernel.halfedge_handle(e, 0);
     const auto left = kernel.face_handle(h);

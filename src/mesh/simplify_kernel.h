@@ -6,9 +6,9 @@
 #pragma once
 
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
-#include <queue>
 #include <vector>
 
+#include "mesh/indexed_heap.h"
 #include "mesh/quadric.h"
 #include "mesh/simplify_internal.h"
 #include "mesh/simplify_shape.h"
@@ -28,18 +28,6 @@ using HalfedgeHandle = Kernel::HalfedgeHandle;
 using VertexHandle = Kernel::VertexHandle;
 
 enum EdgeClass { kInner = 1, kBorder = 2, kChord = 4 };
-
-// An edge in the queue. It is out of date when the versions of its ends have
-// moved on.
-struct Candidate {
-  double cost;
-  int edge;
-  int choice;  // of the target, see Plan
-  uint32_t stamp;
-  bool operator<(const Candidate& other) const {  // the cheapest on top
-    return cost != other.cost ? cost > other.cost : edge > other.edge;
-  }
-};
 
 // What a collapse would do: `halfedge` points from the vertex that goes to the
 // one that stays and moves to `target`.
@@ -86,11 +74,6 @@ struct Collapser::Impl {
   template <typename Wanted, typename Done>
   void Run(const Wanted& wanted, const Done& done);
 
-  uint32_t Stamp(EdgeHandle e) const {
-    const HalfedgeHandle h = kernel.halfedge_handle(e, 0);
-    return version[kernel.from_vertex_handle(h).idx()] +
-           version[kernel.to_vertex_handle(h).idx()];
-  }
   bool IsCorner(int v) const {
     return border_degree[v] != 0 && border_degree[v] != 2;
   }
@@ -107,17 +90,17 @@ struct Collapser::Impl {
   std::vector<Eigen::Vector3d> position;  // about `center`, a vertex
   std::vector<Quadric> quadric;           // a vertex
   std::vector<double> weight;             // area in the quadric, a vertex
-  std::vector<uint32_t> version;          // a vertex
   std::vector<int> border_degree;         // border edges at a vertex
   std::vector<int> label;                 // a face
   std::vector<uint8_t> border;            // an edge
   std::vector<uint8_t> rejected;          // an edge, tried in vain
+  std::vector<uint8_t> next_choice;       // an edge: of the target, see Plan
   std::vector<int> cluster_faces;         // faces left in a cluster
   std::vector<int> cluster_inner;         // candidates of step 1 in a cluster
   int num_faces = 0, num_border = 0, num_collapses = 0;
   double max_error = 0;
   int active = 0;  // classes of edges that may collapse now
-  std::priority_queue<Candidate> queue;
+  IndexedHeap queue = IndexedHeap(0);  // edges by cost
 };
 
 }  // namespace facet
