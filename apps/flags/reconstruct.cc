@@ -343,6 +343,7 @@ ReconstructOptions ReconstructOptionsFromFlags() {
   o.flags_text = FlagsText({"from_stage", "overwrite"});
   CheckNumbers();
   o.sequence = SequenceOptionsFromFlags();
+  o.sequence.keep_depth = true;  // every stage from the keyframes on reads it
   o.keyframes = KeyframeOptionsFromFlags();
   MeshOptions(&o);
   TextureOptions(&o);

@@ -15,9 +15,9 @@ namespace {
 constexpr double kMb = 1024.0 * 1024.0;
 constexpr double kBaseMb = 60;  // code, libraries, buffers
 constexpr double kBytesPerFace = 330, kBytesPerKeptFace = 70;
-constexpr double kBytesPerPixel = 7, kBytesPerSmoothPixel = 4;
+constexpr double kBytesPerPixel = 9, kBytesPerSmoothPixel = 4;  // with depth
 constexpr double kBytesPerSampledTexel = 100, kBytesPerObservation = 11;
-constexpr double kBytesPerAtlasTexel = 220;
+constexpr double kBytesPerAtlasTexel = 250;
 constexpr double kSeenShare = 0.15;  // of the keyframes see a texel
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <mutex>
 
 #include "rgbd/image_files.h"
 #include "rgbd/pose_text.h"
@@ -124,10 +125,24 @@ class BundleFusionSequence : public RgbdSequence {
 
  private:
   cv::Mat DepthWithin(int frame_idx, double min_m, double max_m) const {
+    return DepthInMetres(
+        RawDepth(frame_idx), calibration_.depth_shift, min_m, max_m);
+  }
+
+  cv::Mat RawDepth(int frame_idx) const {
+    if (options_.keep_depth) {
+      const std::lock_guard<std::mutex> lock(kept_mutex_);
+      const auto kept = kept_depth_.find(frame_idx);
+      if (kept != kept_depth_.end()) return kept->second;
+    }
     const std::string& file = frames_[frame_idx].depth_path;
-    const cv::Mat raw = ReadRawDepthImage(file);
+    cv::Mat raw = ReadRawDepthImage(file);
     CheckSize(raw, calibration_.depth, file);
-    return DepthInMetres(raw, calibration_.depth_shift, min_m, max_m);
+    if (options_.keep_depth) {
+      const std::lock_guard<std::mutex> lock(kept_mutex_);
+      kept_depth_.emplace(frame_idx, raw);
+    }
+    return raw;
   }
 
   static void CheckSize(const cv::Mat& image,
@@ -300,6 +315,9 @@ class BundleFusionSequence : public RgbdSequence {
     }
     throw InputError(problem);
   }
+
+  mutable std::mutex kept_mutex_;
+  mutable std::map<int, cv::Mat> kept_depth_;  // by frame
 };
 
 }  // namespace

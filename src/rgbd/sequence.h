@@ -36,6 +36,8 @@ struct SequenceOptions {
   // Depth outside [min, max] counts as missing [m].
   double min_depth_m = 0.3;
   double max_depth_m = 6.0;
+  // Depth images stay in memory once they are decoded, at 2 bytes a pixel.
+  bool keep_depth = false;
 };
 
 class RgbdSequence {

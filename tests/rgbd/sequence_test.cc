@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "tests/rgbd/tiny_sequence.h"
 #include "util/errors.h"
 #include "util/warnings.h"
@@ -127,6 +129,26 @@ TEST(Sequence, LumaIsThatOfTheColours) {
   ASSERT_EQ(luma.type(), CV_32F);
   EXPECT_LT(cv::norm(luma, LumaFromRgb(sequence->LoadColor(0)), cv::NORM_INF),
             2.5 / 255);
+}
+
+// A depth image that is kept is read once: its file may be gone. Breaks if the
+// range is applied to what is kept, or nothing is kept.
+TEST(Sequence, KeptDepthIsReadOnce) {
+  for (const bool keep : {true, false}) {
+    const TinySequence files;
+    SequenceOptions options;
+    options.keep_depth = keep;
+    const auto sequence = OpenSequence(files.path(), options);
+    const cv::Mat first = sequence->LoadDepth(0);
+    std::filesystem::remove(sequence->frames()[0].depth_path);
+    if (keep) {
+      EXPECT_EQ(cv::norm(first, sequence->LoadDepth(0), cv::NORM_INF), 0);
+      EXPECT_GE(cv::countNonZero(sequence->LoadDepthOfAnyRange(0)),
+                cv::countNonZero(first));
+    } else {
+      EXPECT_THROW(sequence->LoadDepth(0), InputError);
+    }
+  }
 }
 
 // 0, 65535 and values outside the range are missing; the range's ends are not.
