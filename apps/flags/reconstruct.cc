@@ -93,6 +93,9 @@ DEFINE_int32(simplify_faces,
 DEFINE_double(simplify_faces_per_m2,
               SimplifyOptions().faces_per_m2,
               "face budget by surface");
+DEFINE_double(simplify_plane_share,
+              SimplifyOptions().cluster_plane_share,
+              "1 draws vertices into the planes, 0 to the dense surface");
 DEFINE_int32(simplify_inner_target,
              SimplifyOptions().inner_target,
              "counts: inner edges left in a cluster");
@@ -222,6 +225,7 @@ void CheckNumbers() {
       {"simplify_inner_target", 0},
       {"simplify_border_ratio", 0, 1, true},
       {"simplify_passes", 1, 100},
+      {"simplify_plane_share", 0, 1},
       {"texel_size", 0.0001, 0.1},
       {"atlas_page_size", 64, 32768},
       {"texel_stride", 0, 1000},
@@ -273,6 +277,7 @@ void MeshOptions(ReconstructOptions* o) {
                          : SimplifyStop::kCounts;
   o->simplify.target_faces = FLAGS_simplify_faces;
   o->simplify.faces_per_m2 = FLAGS_simplify_faces_per_m2;
+  o->simplify.cluster_plane_share = FLAGS_simplify_plane_share;
   o->simplify.inner_target = FLAGS_simplify_inner_target;
   o->simplify.border_ratio = FLAGS_simplify_border_ratio;
   o->simplify.passes = FLAGS_simplify_passes;
@@ -357,6 +362,7 @@ std::string ProfileFlags(const std::string& name) {
   if (Choose("profile", name) == 0) return "";
   // What the paper says, in the order of its sections (docs/cli.md).
   return "--simplify_stop=counts\n"
+         "--simplify_plane_share=0\n"
          "--merge_max_rms=0\n"
          "--merge_max_drift=0\n"
          "--merge_max_member_rms=0\n"

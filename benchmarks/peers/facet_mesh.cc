@@ -6,6 +6,8 @@
 //   merge INPUT K OUTPUT       clusters merged to planes
 //   simplify INPUT N OUTPUT    default clusters, merged, then N faces;
 //                              N = 0: facet's own budget by area
+//   simplify-near INPUT N OUTPUT  the same, near the dense surface rather than
+//                              the planes
 #include "benchmarks/peers/peer_run.h"
 #include "mesh/merge.h"
 #include "mesh/mesh_io.h"
@@ -32,7 +34,8 @@ PlanarPartition Merge(const TriMesh& mesh, const PlanarPartition& clusters) {
 
 void Run(const PeerArgs& args) {
   const TriMesh mesh = ReadPeerMesh(args.input);
-  const bool simplify = args.method == "simplify";
+  const bool near = args.method == "simplify-near";
+  const bool simplify = near || args.method == "simplify";
   PartitionOptions options;
   if (!simplify) options.target_clusters = args.count;
   PlanarPartition planes = Partition(mesh, options);
@@ -43,6 +46,7 @@ void Run(const PeerArgs& args) {
   }
   SimplifyOptions budget;
   budget.target_faces = args.count;
+  if (near) budget.cluster_plane_share = 0;
   const StageMeter meter;
   const SimplifyResult light = SimplifyByPlanes(mesh, planes, budget);
   meter.Print("simplify", light.mesh.NumFaces());
@@ -53,6 +57,8 @@ void Run(const PeerArgs& args) {
 }  // namespace facet
 
 int main(int argc, char** argv) {
-  return facet::RunPeer(
-      argc, argv, {{"partition", "merge", "simplify"}}, facet::Run);
+  return facet::RunPeer(argc,
+                        argv,
+                        {{"partition", "merge", "simplify", "simplify-near"}},
+                        facet::Run);
 }

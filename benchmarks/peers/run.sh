@@ -105,7 +105,9 @@ peers_simplification() {
   peers_run "$1" "$2" facet-own facet-mesh simplify 0
   own=$(peers_total "$1/facet-own.csv" | cut -d, -f4)
   jobs="facet|facet|facet|facet-mesh|simplify|20000
-facet-own|facet with its own budget|facet|facet-mesh|simplify|0"
+facet-near|facet with plane share 0|facet|facet-mesh|simplify-near|20000
+facet-own|facet with its own budget|facet|facet-mesh|simplify|0
+facet-own-near|facet with its own budget and plane share 0|facet|facet-mesh|simplify-near|0"
   for peer in "open3d|Open3D quadric decimation" \
     "openmesh|OpenMesh quadrics and flip guard" \
     "meshoptimizer|meshoptimizer simplify"; do

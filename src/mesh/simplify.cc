@@ -33,8 +33,10 @@ void CheckOptions(const SimplifyOptions& o) {
           "weights must not be negative");
   require(o.max_turn_deg > 0 && o.max_turn_deg < 90,
           "max_turn_deg must lie in (0, 90)");
-  require(o.max_plane_deg > 0 && o.max_plane_deg < 90,
-          "max_plane_deg must lie in (0, 90)");
+  require(o.max_away_deg > 0 && o.max_away_deg <= 180,
+          "max_away_deg must lie in (0, 180]");
+  require(o.shape_penalty == 0 || o.shape_penalty >= 1,
+          "shape_penalty must be 0 or at least 1");
 }
 
 int CountBorderEdges(const TriMesh& mesh, const std::vector<int>& labels) {

@@ -12,9 +12,11 @@
 //   chord    both ends on borders, the edge itself inside a cluster: never
 //            collapsed, it would pinch the cluster.
 //
-// Corners (border vertices with other than two border edges) are never moved
-// nor removed. A collapse must pass the link condition, on the mesh and on its
-// labels, and the shape checks below.
+// Corners (border vertices with other than two border edges) move and merge
+// like other border vertices: the triple points of noisy clusters are nothing
+// to hold on to, and those of the room are held by their quadrics. A collapse
+// must pass the link condition, on the mesh and on its labels, and the shape
+// checks below.
 #pragma once
 
 #include <vector>
@@ -58,22 +60,27 @@ struct SimplifyOptions {
   bool keep_mesh_boundary = false;
 
   // Quadrics: share of the plane of the cluster against that of the face, in
-  // [0, 1] (1 draws vertices into the planes); weights of the squared edge
+  // [0, 1]: 1 draws vertices into the planes and to where planes meet, 0 to the
+  // dense surface; weights of the squared edge
   // lengths of the lines along borders; share of the mean face area that
   // anchors vertices to themselves.
-  double cluster_plane_share = 0;
+  double cluster_plane_share = 0.8;
   double cluster_border_weight = 0.05;
-  double mesh_boundary_weight = 1;
-  double point_share = 1e-3;
+  double mesh_boundary_weight = 0.3;
+  double point_share = 1e-5;
 
-  // Shape checks of a collapse, for each face that survives it: share of the
-  // present height that must remain; largest turn of the normal; largest angle
-  // to the plane of the cluster, or not larger than now; compactness
-  // 4 sqrt(3) area / (l1^2 + l2^2 + l3^2), or not smaller than now.
+  // Shape of a collapse, for each face that survives it: share of the present
+  // height that must remain; largest turn of the normal; largest angle to the
+  // mean normal of the dense surface that its corners stand for, or not larger
+  // than now; compactness 4 sqrt(3) area / (l1^2 + l2^2 + l3^2), or not smaller
+  // than now. A collapse that breaks one of the last three, but turns no normal
+  // by 89 degrees and leaves a compactness of 2e-4, counts as shape_penalty
+  // times as costly, in squared error (>= 1); 0: it is never made.
   double min_height_share = 1e-3;
   double max_turn_deg = 80;
-  double max_plane_deg = 75;
+  double max_away_deg = 80;
   double min_compactness = 0.02;
+  double shape_penalty = 3;
 };
 
 struct SimplifyReport {

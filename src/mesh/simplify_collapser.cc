@@ -22,39 +22,42 @@ bool Collapser::Impl::MayCollapse(EdgeHandle e) const {
   const EdgeClass edge_class = ClassOf(e);
   if (!(edge_class & active)) return false;
   if (edge_class != kBorder) return true;
-  if (options.keep_mesh_boundary && kernel.is_boundary(e)) return false;
   const HalfedgeHandle h = kernel.halfedge_handle(e, 0);
-  return !IsCorner(kernel.from_vertex_handle(h).idx()) ||
-         !IsCorner(kernel.to_vertex_handle(h).idx());
+  return !options.keep_mesh_boundary ||
+         !kernel.is_boundary(kernel.from_vertex_handle(h)) ||
+         !kernel.is_boundary(kernel.to_vertex_handle(h));
 }
 
-// Choice 0 is the best target; where its shape is refused, choices 1 to 3 are
-// the midpoint and the two ends. With an end that has to stay there is only 0.
-Collapse Collapser::Impl::Plan(EdgeHandle e, int choice) const {
+// Target 0 is the best; where its shape is refused, 1 to 3 are the midpoint and
+// the two ends. With an end that has to stay there is only 0.
+Collapse Collapser::Impl::Plan(EdgeHandle e, int target) const {
   Collapse plan;
   plan.halfedge = kernel.halfedge_handle(e, 0);
   int from = kernel.from_vertex_handle(plan.halfedge).idx();
   int to = kernel.to_vertex_handle(plan.halfedge).idx();
-  // The end that has to stay put: a corner, or the border end of an inner edge.
+  // The end that has to stay put: the border end of an inner edge, or an end on
+  // a boundary that is left alone. The vertex of a corner outlives others.
   const auto fixed = [&](int v) {
-    return border[e.idx()] ? IsCorner(v) : border_degree[v] > 0;
+    return border[e.idx()] ? options.keep_mesh_boundary &&
+                                 kernel.is_boundary(VertexHandle(v))
+                           : border_degree[v] > 0;
   };
-  if (fixed(from)) {
+  if (fixed(from) || (!fixed(to) && border_degree[from] > border_degree[to])) {
     std::swap(from, to);
     plan.halfedge = kernel.opposite_halfedge_handle(plan.halfedge);
   }
-  plan.last_choice = fixed(to) ? 0 : kNumChoices - 1;
+  plan.fixed_target = fixed(to);
   const Quadric q = quadric[from] + quadric[to];
   const Eigen::Vector3d& a = position[from];
   const Eigen::Vector3d& b = position[to];
   plan.target = b;
-  if (plan.last_choice != 0) {
+  if (!plan.fixed_target) {
     Eigen::Vector3d best;
-    if (choice == 3) {
+    if (target == 3) {
       plan.target = a;
-    } else if (choice <= 1) {
+    } else if (target <= 1) {
       plan.target = 0.5 * (a + b);
-      if (choice == 0 && q.Minimum(&best) &&
+      if (target == 0 && q.Minimum(&best) &&
           (best - plan.target).squaredNorm() <= 4 * (a - b).squaredNorm()) {
         plan.target = best;
       }
@@ -90,9 +93,11 @@ bool Collapser::Impl::LinkAllows(const Collapse& collapse) const {
   return true;
 }
 
-bool Collapser::Impl::ShapeAllows(const Collapse& collapse) const {
+bool Collapser::Impl::ShapeAllows(const Collapse& collapse,
+                                  const ShapeLimits& limits) const {
   const VertexHandle from = kernel.from_vertex_handle(collapse.halfedge);
   const VertexHandle to = kernel.to_vertex_handle(collapse.halfedge);
+  const Eigen::Vector3d kept = facing[from.idx()] + facing[to.idx()];
   for (const VertexHandle moved : {from, to}) {
     const VertexHandle other = moved == from ? to : from;
     if (moved == to && collapse.target == position[to.idx()]) continue;
@@ -102,12 +107,11 @@ bool Collapser::Impl::ShapeAllows(const Collapse& collapse) const {
       const VertexHandle v3 =
           kernel.to_vertex_handle(kernel.next_halfedge_handle(*it));
       if (v2 == other || v3 == other) continue;
-      const int id = label[kernel.face_handle(*it).idx()];
       if (!MayMoveCorner(position[moved.idx()],
                          collapse.target,
                          position[v2.idx()],
                          position[v3.idx()],
-                         partition.clusters[id].plane.normal,
+                         kept + facing[v2.idx()] + facing[v3.idx()],
                          limits)) {
         return false;
       }
@@ -167,6 +171,7 @@ void Collapser::Impl::Execute(const Collapse& collapse) {
   position[to.idx()] = collapse.target;
   quadric[to.idx()] += quadric[from.idx()];
   weight[to.idx()] += weight[from.idx()];
+  facing[to.idx()] += facing[from.idx()];
   int degree = 0;
   for (const EdgeHandle e : kernel.ve_range(to)) degree += border[e.idx()];
   border_degree[to.idx()] = degree;
@@ -180,7 +185,7 @@ void Collapser::Impl::Execute(const Collapse& collapse) {
 
 void Collapser::Impl::Push(EdgeHandle e) {
   rejected[e.idx()] = 0;
-  next_choice[e.idx()] = 0;
+  attempt[e.idx()] = 0;
   if (MayCollapse(e)) {
     queue.Set(e.idx(), Plan(e, 0).cost);
   } else {
@@ -208,7 +213,9 @@ void Collapser::Impl::Fill(int classes) {
 }
 
 // Collapses the cheapest valid candidate for which wanted(edge, plan) holds
-// until done() or the queue is empty.
+// until done() or the queue is empty. Attempts 0 to 3 of an edge are its
+// targets within the soft limits of shape, 4 to 7 the same within the hard
+// ones, where it waits at shape_penalty times its cost.
 template <typename Wanted, typename Done>
 void Collapser::Impl::Run(const Wanted& wanted, const Done& done) {
   while (!queue.Empty() && !done()) {
@@ -217,22 +224,39 @@ void Collapser::Impl::Run(const Wanted& wanted, const Done& done) {
       queue.Remove(e.idx());
       continue;
     }
-    const Collapse plan = Plan(e, next_choice[e.idx()]);
+    const int tried = attempt[e.idx()];
+    const bool soft = tried < kNumTargets;
+    const Collapse plan = Plan(e, tried % kNumTargets);
     if (!(ErrorOf(plan) <= options.max_error_m) || !wanted(e, plan)) {
       queue.Remove(e.idx());
     } else if (!LinkAllows(plan)) {
-      queue.Remove(e.idx());
-      rejected[e.idx()] = 1;
-    } else if (ShapeAllows(plan)) {
+      Reject(e);
+    } else if (ShapeAllows(plan, soft ? soft_limits : hard_limits)) {
       queue.Remove(e.idx());
       Execute(plan);
-    } else if (next_choice[e.idx()] < plan.last_choice) {
-      queue.Set(e.idx(), Plan(e, ++next_choice[e.idx()]).cost);
     } else {
-      queue.Remove(e.idx());
-      rejected[e.idx()] = 1;
+      Retry(e, plan.fixed_target);
     }
   }
+}
+
+void Collapser::Impl::Reject(EdgeHandle e) {
+  queue.Remove(e.idx());
+  rejected[e.idx()] = 1;
+}
+
+void Collapser::Impl::Retry(EdgeHandle e, bool fixed_target) {
+  int next = attempt[e.idx()] + 1;
+  if (fixed_target) next = next <= kNumTargets ? kNumTargets : 2 * kNumTargets;
+  const bool soft = next < kNumTargets;
+  if (next == 2 * kNumTargets || (!soft && options.shape_penalty == 0)) {
+    Reject(e);
+    return;
+  }
+  attempt[e.idx()] = static_cast<uint8_t>(next);
+  queue.Set(
+      e.idx(),
+      (soft ? 1 : options.shape_penalty) * Plan(e, next % kNumTargets).cost);
 }
 
 Collapser::Collapser(const TriMesh& mesh,

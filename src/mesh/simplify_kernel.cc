@@ -43,7 +43,7 @@ void Collapser::Impl::MarkBorders() {
   border.assign(kernel.n_edges(), 0);
   rejected.assign(kernel.n_edges(), 0);
   border_degree.assign(kernel.n_vertices(), 0);
-  next_choice.assign(kernel.n_edges(), 0);
+  attempt.assign(kernel.n_edges(), 0);
   for (const EdgeHandle e : kernel.edges()) {
     const HalfedgeHandle h = kernel.halfedge_handle(e, 0);
     const auto left = kernel.face_handle(h);
@@ -72,6 +72,7 @@ void Collapser::Impl::BuildQuadrics(const TriMesh& mesh) {
     quadric.push_back(Quadric::Point(p, point_weight));
   }
   weight.assign(position.size(), 1e-30);
+  facing.assign(position.size(), Eigen::Vector3d::Zero());
   for (size_t f = 0; f < mesh.NumFaces(); ++f) {
     const Eigen::Vector3d cross = mesh.FaceCross(f);
     const double norm = cross.norm();
@@ -85,6 +86,7 @@ void Collapser::Impl::BuildQuadrics(const TriMesh& mesh) {
     for (const int v : mesh.faces[f]) {
       quadric[v] += q;
       weight[v] += w;
+      facing[v] += w * n;
     }
   }
   for (const EdgeHandle e : kernel.edges()) {
@@ -118,14 +120,14 @@ double Collapser::Impl::AreaOf(OpenMesh::FaceHandle face) const {
 bool Collapser::Impl::CollapseSideOf(OpenMesh::FaceHandle face) {
   for (const EdgeHandle e : kernel.fe_range(face)) {
     if (!MayCollapse(e)) continue;
-    for (int choice = 0; choice < kNumChoices; ++choice) {
-      const Collapse plan = Plan(e, choice);
+    for (int target = 0; target < kNumTargets; ++target) {
+      const Collapse plan = Plan(e, target);
       if (ErrorOf(plan) <= options.max_error_m && LinkAllows(plan) &&
-          ShapeAllows(plan)) {
+          ShapeAllows(plan, soft_limits)) {
         Execute(plan);
         return true;
       }
-      if (choice >= plan.last_choice) break;
+      if (plan.fixed_target) break;
     }
   }
   return false;
@@ -165,13 +167,12 @@ bool Collapser::Impl::MayMove(VertexHandle v,
     const VertexHandle v2 = kernel.to_vertex_handle(h);
     const VertexHandle v3 =
         kernel.to_vertex_handle(kernel.next_halfedge_handle(h));
-    const int id = label[kernel.face_handle(h).idx()];
     if (!MayMoveCorner(position[v.idx()],
                        target,
                        position[v2.idx()],
                        position[v3.idx()],
-                       partition.clusters[id].plane.normal,
-                       limits)) {
+                       facing[v.idx()] + facing[v2.idx()] + facing[v3.idx()],
+                       soft_limits)) {
       return false;
     }
   }
@@ -186,7 +187,6 @@ bool Collapser::Impl::NudgeCornerOf(OpenMesh::FaceHandle face) {
   const Eigen::Vector3d w = n.cross(u);
   for (double step = 1e-5; step < 2e-3; step *= 10) {
     for (const VertexHandle v : kernel.fv_range(face)) {
-      if (IsCorner(v.idx())) continue;
       if (options.keep_mesh_boundary && kernel.is_boundary(v)) continue;
       const Eigen::Vector3d old = position[v.idx()];
       for (int k = 0; k < 16; ++k) {

@@ -35,16 +35,19 @@ struct Collapse {
   HalfedgeHandle halfedge;
   Eigen::Vector3d target;
   double cost = 0;
-  int last_choice = 0;
+  bool fixed_target = false;  // the vertex that stays may not move
 };
 
-constexpr int kNumChoices = 4;  // of a target, see Plan
+constexpr int kNumTargets = 4;  // of a collapse, see Plan
 
 struct Collapser::Impl {
   Impl(const TriMesh& mesh,
        const PlanarPartition& partition_in,
        const SimplifyOptions& options_in)
-      : partition(partition_in), options(options_in), limits(options_in) {
+      : partition(partition_in),
+        options(options_in),
+        soft_limits(ShapeLimits::Soft(options_in)),
+        hard_limits(ShapeLimits::Hard(options_in)) {
     BuildKernel(mesh);
     MarkBorders();
     BuildQuadrics(mesh);
@@ -56,11 +59,13 @@ struct Collapser::Impl {
 
   EdgeClass ClassOf(EdgeHandle e) const;
   bool MayCollapse(EdgeHandle e) const;
-  Collapse Plan(EdgeHandle e, int choice) const;
+  Collapse Plan(EdgeHandle e, int target) const;
   bool LinkAllows(const Collapse& collapse) const;
-  bool ShapeAllows(const Collapse& collapse) const;
+  bool ShapeAllows(const Collapse& collapse, const ShapeLimits& limits) const;
   void Execute(const Collapse& collapse);
   void Push(EdgeHandle e);
+  void Reject(EdgeHandle e);
+  void Retry(EdgeHandle e, bool fixed_target);
   void Fill(int classes);
   void RemoveFlatFaces();
   bool CollapseSideOf(OpenMesh::FaceHandle face);
@@ -74,32 +79,30 @@ struct Collapser::Impl {
   template <typename Wanted, typename Done>
   void Run(const Wanted& wanted, const Done& done);
 
-  bool IsCorner(int v) const {
-    return border_degree[v] != 0 && border_degree[v] != 2;
-  }
   int ClusterOf(EdgeHandle e) const {  // of an edge inside a cluster
     return label[kernel.face_handle(kernel.halfedge_handle(e, 0)).idx()];
   }
 
   const PlanarPartition& partition;
   const SimplifyOptions options;
-  const ShapeLimits limits;
+  const ShapeLimits soft_limits, hard_limits;
   Kernel kernel;
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   double total_area = 0;
   std::vector<Eigen::Vector3d> position;  // about `center`, a vertex
   std::vector<Quadric> quadric;           // a vertex
   std::vector<double> weight;             // area in the quadric, a vertex
+  std::vector<Eigen::Vector3d> facing;    // normals times area, a vertex
   std::vector<int> border_degree;         // border edges at a vertex
   std::vector<int> label;                 // a face
   std::vector<uint8_t> border;            // an edge
   std::vector<uint8_t> rejected;          // an edge, tried in vain
-  std::vector<uint8_t> next_choice;       // an edge: of the target, see Plan
+  std::vector<uint8_t> attempt;           // an edge: see Run
   std::vector<int> cluster_faces;         // faces left in a cluster
   std::vector<int> cluster_inner;         // candidates of step 1 in a cluster
   int num_faces = 0, num_border = 0, num_collapses = 0;
   double max_error = 0;
-  int active = 0;  // classes of edges that may collapse now
+  int active = 0;                      // classes of edges that may collapse now
   IndexedHeap queue = IndexedHeap(0);  // edges by cost
 };
 

@@ -29,23 +29,30 @@ inline double Compactness(const Eigen::Vector3d& p0,
 constexpr double kNoNormal = 2e-12;  // twice the area of such a face [m^2]
 
 struct ShapeLimits {
-  explicit ShapeLimits(const SimplifyOptions& options)
-      : min_height_share(options.min_height_share),
-        min_turn_cos(std::cos(options.max_turn_deg * M_PI / 180)),
-        min_plane_cos(std::cos(options.max_plane_deg * M_PI / 180)),
-        min_compactness(options.min_compactness) {}
+  // Those that no collapse may break.
+  static ShapeLimits Hard(const SimplifyOptions& options) {
+    return {options.min_height_share, std::cos(89 * M_PI / 180), -1, 2e-4};
+  }
+  // Those that a collapse keeps or pays for.
+  static ShapeLimits Soft(const SimplifyOptions& options) {
+    return {options.min_height_share,
+            std::cos(options.max_turn_deg * M_PI / 180),
+            std::cos(options.max_away_deg * M_PI / 180),
+            options.min_compactness};
+  }
 
-  double min_height_share, min_turn_cos, min_plane_cos, min_compactness;
+  double min_height_share, min_turn_cos, min_facing_cos, min_compactness;
 };
 
 // May corner `from` of the triangle (from, p2, p3), counter-clockwise, move to
-// `to`? `cluster_normal` has unit length. A face without a normal may become
-// anything that has one.
+// `to`? `facing`, of any length, is where the dense surface looks that the
+// triangle stands for. A face without a normal may become anything that has
+// one.
 inline bool MayMoveCorner(const Eigen::Vector3d& from,
                           const Eigen::Vector3d& to,
                           const Eigen::Vector3d& p2,
                           const Eigen::Vector3d& p3,
-                          const Eigen::Vector3d& cluster_normal,
+                          const Eigen::Vector3d& facing,
                           const ShapeLimits& limits) {
   const Eigen::Vector3d base = p3 - p2;
   const Eigen::Vector3d old_cross = base.cross(from - p2);
@@ -59,13 +66,13 @@ inline bool MayMoveCorner(const Eigen::Vector3d& from,
   const double new_compact = 3.4641016151377544 * new_norm / lengths;
   if (!(new_compact > 1e-4)) return false;
 
-  // A face that is folded over against its cluster, or has no area, may become
-  // anything that lies well.
-  const double new_plane_cos = new_cross.dot(cluster_normal) / new_norm;
-  const bool old_folded =
-      !(old_norm > kNoNormal) ||
-      old_cross.dot(cluster_normal) < limits.min_plane_cos * old_norm;
-  if (old_folded && new_plane_cos >= limits.min_plane_cos &&
+  // A face that looks away from its surface, or has no area, may become
+  // anything that lies well. Cosines times the length of `facing`.
+  const double min_facing = limits.min_facing_cos * facing.norm();
+  const double new_facing = new_cross.dot(facing) / new_norm;
+  const bool old_away =
+      !(old_norm > kNoNormal) || old_cross.dot(facing) < min_facing * old_norm;
+  if (old_away && new_facing >= min_facing &&
       new_compact >= limits.min_compactness) {
     return true;
   }
@@ -75,8 +82,8 @@ inline bool MayMoveCorner(const Eigen::Vector3d& from,
   const double turned = new_cross.dot(old_cross);
   if (!(turned > limits.min_height_share * old_norm * old_norm)) return false;
   if (turned < limits.min_turn_cos * new_norm * old_norm) return false;
-  if (new_plane_cos < limits.min_plane_cos &&
-      new_plane_cos * old_norm < old_cross.dot(cluster_normal)) {
+  if (new_facing < min_facing &&
+      new_facing * old_norm < old_cross.dot(facing)) {
     return false;
   }
   if (new_compact < limits.min_compactness) {

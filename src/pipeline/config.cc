@@ -48,6 +48,7 @@ json SimplifySettings(const ReconstructOptions& o) {
           {"faces_per_m2", o.simplify.faces_per_m2},
           {"free_error_m", o.simplify.free_error_m},
           {"max_error_m", o.simplify.max_error_m},
+          {"cluster_plane_share", o.simplify.cluster_plane_share},
           {"collapse_to_border", o.simplify.collapse_to_border},
           {"keep_mesh_boundary", o.simplify.keep_mesh_boundary}};
 }
