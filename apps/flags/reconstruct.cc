@@ -42,6 +42,10 @@ DEFINE_string(to_stage, "export", "last stage to run");
 DEFINE_int32(threads, 0, "threads to use, 0 = one a core");
 DEFINE_uint64(seed, 0, "recorded; nothing in the pipeline is random today");
 DEFINE_bool(previews, true, "draw previews/*.png");
+DEFINE_double(max_memory_gb,
+              facet::ReconstructOptions().max_memory_gb,
+              "save memory where possible and refuse what needs more, 0 = no "
+              "limit; the model does not depend on it");
 DEFINE_bool(trace_states,
             SolverConfig().trace_states,
             "keep poses and planes after every phase (trace_states.bin), from "
@@ -212,6 +216,7 @@ void CheckNumbers() {
   constexpr double kMax = std::numeric_limits<double>::max();
   CheckFlagLimits({
       {"threads", 0, 4096},
+      {"max_memory_gb", 0, kMax},
       {"partition_clusters", 1},
       {"partition_max_rms", 0},
       {"merge_max_normal_deg", 0, 180, true},
@@ -344,6 +349,7 @@ ReconstructOptions ReconstructOptionsFromFlags() {
   o.to_stage = ParseStage("to_stage", FLAGS_to_stage);
   o.seed = FLAGS_seed;
   o.previews = FLAGS_previews;
+  o.max_memory_gb = FLAGS_max_memory_gb;
   // The same model in one go, also when this command goes on in a run folder.
   o.flags_text = FlagsText({"from_stage", "overwrite"});
   CheckNumbers();

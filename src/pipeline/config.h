@@ -36,7 +36,8 @@ struct ReconstructOptions {
   Stage from_stage = Stage::kPartition, to_stage = Stage::kExport;
   uint64_t seed = 0;  // nothing of the default pipeline is random
   bool previews = true;
-  std::string flags_text;  // written to flags.txt
+  double max_memory_gb = 0;  // see pipeline/preflight.h; 0 = no limit
+  std::string flags_text;    // written to flags.txt
 
   SequenceOptions sequence;
   CleanOptions clean;

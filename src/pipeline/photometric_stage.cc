@@ -95,7 +95,7 @@ class Level {
         int level,
         int stride,
         SampledTexels sampled)
-      : images_(images) {
+      : images_(images), smoothed_(inputs.options.smoothing_sigma_px > 0) {
     const PhotometricOptions& options = inputs.options;
     problem_.formulation = options.formulation;
     problem_.camera = inputs.sequence.calibration().color.Level(level);
@@ -105,8 +105,8 @@ class Level {
                         problem_.camera.height};
     for (size_t k = 0; k < images_.size(); ++k) {
       problem_.images.push_back(ViewOf(images_.smooth[k]));
-      problem_.raw_images.push_back(ViewOf(images_.luma[k]));
     }
+    if (options.solver.trace_rms_grey) MakeLuma();
     if (options.formulation.channels == Channels::kRgb) {
       AddChannels(options.smoothing_sigma_px);
     }
@@ -123,6 +123,18 @@ class Level {
 
   const TextureProblem& problem() const { return problem_; }
 
+  // With rms_grey, for which luma is made if it is not kept.
+  EnergyTerms Evaluate(const EnergyWeights& weights, const ReconState& state) {
+    const bool kept = !luma_.empty();
+    if (!kept) MakeLuma();
+    const EnergyTerms terms = EvaluateEnergy(problem_, weights, state, true);
+    if (!kept) {
+      problem_.raw_images.clear();
+      luma_.clear();
+    }
+    return terms;
+  }
+
   void AddTerms(const std::vector<WeightedTerm>& terms,
                 const ReconState& start,
                 double texel_weight) {
@@ -130,6 +142,17 @@ class Level {
   }
 
  private:
+  void MakeLuma() {
+    luma_ = images_.smooth;  // headers only
+    if (smoothed_) {
+      ParallelFor(
+          0, luma_.size(), [&](size_t k) { luma_[k] = LumaOf(images_, k); });
+    }
+    for (const cv::Mat& luma : luma_) {
+      problem_.raw_images.push_back(ViewOf(luma));
+    }
+  }
+
   void AddChannels(double sigma) {
     channels_.resize(images_.size());
     ParallelFor(0, channels_.size(), [&](size_t k) {
@@ -145,6 +168,8 @@ class Level {
   }
 
   KeyframeImages images_;
+  bool smoothed_;
+  std::vector<cv::Mat> luma_;
   std::vector<std::array<cv::Mat, 3>> channels_;
   TextureProblem problem_;
 };
@@ -317,7 +342,7 @@ PhotometricResult RunPhotometricStage(
   print(
       "  round  phase            E_c   lambda1 E_p   lambda2 E_s        E_tex"
       "     others  rms grey  result    wall s");
-  result.initial = EvaluateEnergy(problem, weights, state, true);
+  result.initial = finest.Evaluate(weights, state);
   print(PhaseLine(
       "0", "start", result.initial, weights.lambda1, weights.lambda2, "", 0));
   result.trace.initial = result.initial;
@@ -342,7 +367,7 @@ PhotometricResult RunPhotometricStage(
       problem, weights, options, schedule, 0, print, &state, &result.trace);
   // Poses and planes moved after the last colour step.
   SolveColors(problem, &state);
-  result.final_terms = EvaluateEnergy(problem, weights, state, true);
+  result.final_terms = finest.Evaluate(weights, state);
   StoreResult(problem, state, &result);
   return result;
 }

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "eval/input_check.h"
+#include "util/errors.h"
 #include "util/warnings.h"
 
 namespace facet {
@@ -15,9 +16,11 @@ namespace {
 constexpr double kMb = 1024.0 * 1024.0;
 constexpr double kBaseMb = 60;  // code, libraries, buffers
 constexpr double kBytesPerFace = 330, kBytesPerKeptFace = 70;
-constexpr double kBytesPerPixel = 9, kBytesPerSmoothPixel = 4;  // with depth
+constexpr double kColorBytes = 3, kDepthBytes = 2;  // a pixel
+constexpr double kLumaBytes = 4, kSmoothBytes = 4;  // while optimising
+constexpr double kSolverMb = 60;
 constexpr double kBytesPerSampledTexel = 100, kBytesPerObservation = 11;
-constexpr double kBytesPerAtlasTexel = 250;
+constexpr double kBytesPerAtlasTexel = 180;
 constexpr double kSeenShare = 0.15;  // of the keyframes see a texel
 
 }  // namespace
@@ -49,12 +52,15 @@ double MemoryEstimate::PeakMb() const {
 MemoryEstimate EstimateMemory(const ReconstructOptions& options,
                               const SceneSize& size) {
   const PhotometricOptions& p = options.photometric;
-  const double pixel_bytes =
-      kBytesPerPixel + (p.smoothing_sigma_px > 0 ? kBytesPerSmoothPixel : 0);
-  const double kept =
-      kBaseMb + (kBytesPerKeptFace * size.faces +
-                 pixel_bytes * size.keyframes * size.image_pixels) /
-                    kMb;
+  const double pixels = static_cast<double>(size.keyframes) * size.image_pixels;
+  const double kept = kBaseMb + (kBytesPerKeptFace * size.faces +
+                                 (kColorBytes + kDepthBytes) * pixels) /
+                                    kMb;
+  const bool keeps_luma = p.solver.trace_rms_grey && p.smoothing_sigma_px > 0;
+  const double float_bytes = kSmoothBytes + (keeps_luma ? kLumaBytes : 0);
+  // One coarser level of the pyramid at a time.
+  const double coarse_bytes =
+      p.levels > 1 ? 0.25 * (kColorBytes + float_bytes) : 0;
   const double texel = options.atlas.texel_size_m;
   const double texels = size.area_m2 / (texel * texel);
   const double views = std::max(1.0, kSeenShare * size.keyframes);
@@ -65,10 +71,30 @@ MemoryEstimate EstimateMemory(const ReconstructOptions& options,
   MemoryEstimate estimate;
   estimate.mesh_mb = kBaseMb + kBytesPerFace * size.faces / kMb;
   estimate.photometric_mb =
-      kept +
+      kept + kSolverMb + (float_bytes + coarse_bytes) * pixels / kMb +
       sampled * (kBytesPerSampledTexel + kBytesPerObservation * views) / kMb;
   estimate.export_mb = kept + kBytesPerAtlasTexel * texels / kMb;
   return estimate;
+}
+
+void FitIntoMemory(const SceneSize& size, ReconstructOptions* options) {
+  const double limit_mb = 1024 * options->max_memory_gb;
+  if (!(limit_mb > 0)) return;
+  const auto fits = [&] {
+    return EstimateMemory(*options, size).PeakMb() <= limit_mb;
+  };
+  if (fits()) return;
+  options->photometric.solver.trace_rms_grey = false;
+  if (fits()) return;
+  char text[200];
+  std::snprintf(text,
+                sizeof(text),
+                "about %.2f GB are needed, more than --max_memory_gb=%.6g: use "
+                "a coarser mesh, a larger --keyframe_window or --texel_size, "
+                "or a smaller --max_observations",
+                EstimateMemory(*options, size).PeakMb() / 1024,
+                options->max_memory_gb);
+  throw OptionsError(text);
 }
 
 std::string DescribePlan(const SceneSize& size,

@@ -38,15 +38,22 @@ struct MemoryEstimate {
 
 // A model with one factor a thing, fitted to runs of two real scans:
 //   mesh         60 MB + 330 bytes a face
-//   photometric  60 MB + 70 bytes a face + 11 bytes a pixel of the keyframes
-//                (7 without smoothing) + 100 bytes a sampled texel + 11 bytes
-//                an observation
-//   export       the same without observations, 220 bytes a texel of the atlas
+//   photometric  120 MB + 70 bytes a face + 13 bytes a pixel of the keyframes
+//                (9 without smoothing or rms_grey after every phase), more with
+//                coarser levels + 100 bytes a sampled texel + 11 bytes an
+//                observation
+//   export       60 MB + 70 bytes a face + 5 bytes a pixel + 180 bytes a texel
+//                of the atlas
 // Texels are area / texel_size^2, sampled ones 1 / stride^2 of them, each seen
 // by 15 % of the keyframes; with stride 0 the observations stay below
 // max_observations. Within a factor of two where views are that dense.
 MemoryEstimate EstimateMemory(const ReconstructOptions& options,
                               const SceneSize& size);
+
+// Makes a run fit into options->max_memory_gb: without rms_grey in the trace
+// but for its first and last state, unless it fits anyway. The model does not
+// depend on it. Throws OptionsError if that is not enough.
+void FitIntoMemory(const SceneSize& size, ReconstructOptions* options);
 
 // "765221 faces, 80.2 m2, 184 keyframes of 640x480: ..." for the plan line.
 // Raises a warning that names the flags if `estimate` is more than

@@ -16,6 +16,7 @@
 #include "util/atomic_file.h"
 #include "util/errors.h"
 #include "util/parallel_for.h"
+#include "util/resources.h"
 #include "util/warnings.h"
 
 namespace facet {
@@ -101,6 +102,7 @@ class Run {
 
   void AnnouncePlan() {
     const SceneSize size = MeasureScene(options_, dense_.mesh, *sequence_);
+    FitIntoMemory(size, &options_);
     const MemoryEstimate estimate = EstimateMemory(options_, size);
     const double available = AvailableMemoryMb();
     PrintLine("plan          " + DescribePlan(size, estimate, available));
@@ -221,14 +223,7 @@ class Run {
     for (const int k : keyframes_.keyframes) {
       initial_poses_.push_back(sequence_->color_cam_from_world(k));
     }
-    images_ = LoadKeyframeImages(*sequence_,
-                                 keyframes_.keyframes,
-                                 options_.photometric.smoothing_sigma_px);
-    if (!photometric_.exposures.empty()) {
-      SetExposures(photometric_.exposures,
-                   options_.photometric.smoothing_sigma_px,
-                   &images_);
-    }
+    images_ = LoadKeyframeColors(*sequence_, keyframes_.keyframes);
     atlas_ =
         BuildAtlas(simplified_.mesh, simplified_.partition, options_.atlas);
     if (options_.plane_init == PlaneInit::kSimplified) {
@@ -258,6 +253,7 @@ class Run {
     }
     BeginWriting();
     LoadForTexture();
+    SetExposures({}, options_.photometric.smoothing_sigma_px, &images_);
     std::vector<SurfaceMoments> surface;
     if (options_.plane_init == PlaneInit::kDense) {
       surface = ClusterMoments(dense_.mesh,
@@ -332,6 +328,9 @@ class Run {
     StageClock clock = Begin("export");
     BeginWriting();
     LoadForTexture();
+    images_.exposures = photometric_.exposures;
+    images_.smooth.clear();
+    ReturnFreedMemory();
     const ExportInput input = {*sequence_,
                                dense_,
                                simplified_,
@@ -373,7 +372,7 @@ class Run {
     return report_;
   }
 
-  const ReconstructOptions& options_;
+  ReconstructOptions options_;
   std::unique_ptr<RgbdSequence> sequence_;
   MeshArtefact dense_, simplified_;
   KeyframeArtefact keyframes_;

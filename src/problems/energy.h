@@ -23,6 +23,7 @@
 // Energies of different formulations do not compare; rms_grey does.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -63,7 +64,7 @@ struct EnergyTerms {
   double e_tex = 0;                  // E_c + lambda1 E_p + lambda2 E_s
   // rms of I - C on the unsmoothed luma, 0-255, of all observations and without
   // any loss, whatever the formulation.
-  double rms_grey = 0;
+  double rms_grey = std::numeric_limits<double>::quiet_NaN();
   size_t observations = 0, clamped = 0, behind = 0, lost = 0;
 
   double SumOfTerms() const;  // e_terms

@@ -60,21 +60,35 @@ TextureBaker::TextureBaker(const TextureState& state,
               options.mild_fallback) {}
 
 std::vector<cv::Mat> TextureBaker::Bake(BakeReport* report) const {
-  return TilePainter(
-             state_, atlas_, camera_, lattice_, options_, texels_, sights_)
+  return TilePainter(state_,
+                     atlas_,
+                     camera_,
+                     lattice_,
+                     options_,
+                     texels_,
+                     texels_.q,
+                     sights_)
       .Paint({}, report);
 }
 
 std::vector<cv::Mat> TextureBaker::BakeAs(const TextureState& state,
                                           const std::vector<char>& only_faces,
                                           BakeReport* report) const {
-  const BakeTexels texels = MakeBakeTexels(state.mesh,
-                                           state.planes,
-                                           atlas_,
-                                           options_.ring_px,
-                                           options_.visibility_px);
-  return TilePainter(
-             state, atlas_, camera_, lattice_, options_, texels, sights_)
+  const std::vector<Eigen::Vector3f> points =
+      MakeBakePoints(state.mesh,
+                     state.planes,
+                     atlas_,
+                     options_.ring_px,
+                     options_.visibility_px,
+                     texels_);
+  return TilePainter(state,
+                     atlas_,
+                     camera_,
+                     lattice_,
+                     options_,
+                     texels_,
+                     points,
+                     sights_)
       .Paint(only_faces, report);
 }
 

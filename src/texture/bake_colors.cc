@@ -22,7 +22,7 @@ std::vector<float> Sharpness(const KeyframeImages& images, double power) {
   std::vector<float> sharpness(images.size(), 1.0f);
   if (!(power > 0) || images.size() == 0) return sharpness;
   ParallelFor(0, images.size(), [&](size_t k) {
-    const cv::Mat& luma = images.luma[k];
+    const cv::Mat luma = LumaOf(images, k);
     const ImageView<float> view = {luma.ptr<float>(),
                                    luma.cols,
                                    luma.rows,

@@ -232,4 +232,22 @@ BakeTexels MakeBakeTexels(const TriMesh& mesh,
   return all;
 }
 
+std::vector<Eigen::Vector3f> MakeBakePoints(const TriMesh& mesh,
+                                            const std::vector<Plane>& planes,
+                                            const Atlas& atlas,
+                                            int ring_px,
+                                            int share_px,
+                                            const BakeTexels& texels) {
+  std::vector<Eigen::Vector3f> points(texels.size());
+  ParallelFor(0, atlas.charts.size(), [&](size_t c) {
+    const BakeTexels part =
+        ChartTexelizer(
+            mesh, planes, atlas, static_cast<int>(c), ring_px, share_px)
+            .Run();
+    const BakeTile& first = texels.tiles[texels.chart_tiles[c]];
+    std::copy(part.q.begin(), part.q.end(), points.begin() + first.begin);
+  });
+  return points;
+}
+
 }  // namespace facet

@@ -53,4 +53,13 @@ BakeTexels MakeBakeTexels(const TriMesh& mesh,
                           int ring_px,
                           int share_px);
 
+// The q of `texels`, which are of the same atlas, ring_px and share_px, in
+// another state of the model: it needs a third of the memory of all of them.
+std::vector<Eigen::Vector3f> MakeBakePoints(const TriMesh& mesh,
+                                            const std::vector<Plane>& planes,
+                                            const Atlas& atlas,
+                                            int ring_px,
+                                            int share_px,
+                                            const BakeTexels& texels);
+
 }  // namespace facet

@@ -19,6 +19,11 @@ cv::Mat Smooth(const cv::Mat& image, double sigma) {
 
 }  // namespace
 
+cv::Mat LumaOf(const KeyframeImages& images, size_t keyframe) {
+  const Exposure exposure = images.ExposureOf(keyframe);
+  return LumaFromRgb(images.rgb[keyframe], exposure.gain, exposure.offset);
+}
+
 std::array<cv::Mat, 3> SmoothChannels(const cv::Mat& rgb,
                                       const Exposure& exposure,
                                       double sigma) {
@@ -36,25 +41,18 @@ void SetExposures(const std::vector<Exposure>& exposures,
                   double sigma,
                   KeyframeImages* images) {
   images->exposures = exposures;
+  images->smooth.resize(images->size());
   ParallelFor(0, images->size(), [&](size_t k) {
-    const Exposure exposure = images->ExposureOf(k);
-    images->luma[k] =
-        LumaFromRgb(images->rgb[k], exposure.gain, exposure.offset);
-    images->smooth[k] = Smooth(images->luma[k], sigma);
+    images->smooth[k] = Smooth(LumaOf(*images, k), sigma);
   });
 }
 
-KeyframeImages LoadKeyframeImages(const RgbdSequence& sequence,
-                                  const std::vector<int>& keyframes,
-                                  double sigma) {
+KeyframeImages LoadKeyframeColors(const RgbdSequence& sequence,
+                                  const std::vector<int>& keyframes) {
   KeyframeImages images;
   images.rgb.resize(keyframes.size());
-  images.luma.resize(keyframes.size());
-  images.smooth.resize(keyframes.size());
   ParallelFor(0, keyframes.size(), [&](size_t k) {
     images.rgb[k] = sequence.LoadColor(keyframes[k]);
-    images.luma[k] = LumaFromRgb(images.rgb[k]);
-    images.smooth[k] = Smooth(images.luma[k], sigma);
   });
   return images;
 }
@@ -66,19 +64,19 @@ KeyframeImages PyramidLevel(const KeyframeImages& images,
   reduced.exposures = images.exposures;
   const size_t n = images.size();
   reduced.rgb.resize(n);
-  reduced.luma.resize(n);
   reduced.smooth.resize(n);
   ParallelFor(0, n, [&](size_t k) {
-    const cv::Size size(images.luma[k].cols >> level,
-                        images.luma[k].rows >> level);
+    const cv::Size size(images.rgb[k].cols >> level,
+                        images.rgb[k].rows >> level);
     const cv::Rect whole_squares(
         0, 0, size.width << level, size.height << level);
-    const auto reduce = [&](const cv::Mat& image, cv::Mat* out) {
-      cv::resize(image(whole_squares), *out, size, 0, 0, cv::INTER_AREA);
+    const auto reduce = [&](const cv::Mat& image) {
+      cv::Mat out;
+      cv::resize(image(whole_squares), out, size, 0, 0, cv::INTER_AREA);
+      return out;
     };
-    reduce(images.rgb[k], &reduced.rgb[k]);
-    reduce(images.luma[k], &reduced.luma[k]);
-    reduced.smooth[k] = Smooth(reduced.luma[k], sigma);
+    reduced.rgb[k] = reduce(images.rgb[k]);
+    reduced.smooth[k] = Smooth(reduce(LumaOf(images, k)), sigma);
   });
   return reduced;
 }

@@ -32,6 +32,7 @@ std::vector<uint64_t> SeenWell(const BakeTile& tile,
 struct TilePainter::TileWork {
   TileWork(const BakeTile& tile_of,
            const BakeTexels& texels,
+           const std::vector<Vector3f>& points_of,
            const Chart& chart_of,
            const std::vector<TileSights::View>& views_of)
       : tile(tile_of),
@@ -52,7 +53,7 @@ struct TilePainter::TileWork {
     const std::vector<uint64_t> seen_well = SeenWell(tile, views);
     const auto to_mild = static_cast<uint32_t>(64 * seen_well.size());
     for (size_t i = 0; i < sums.size(); ++i) {
-      const Vector3f& q = texels.q[tile.begin + i];
+      const Vector3f& q = points_of[tile.begin + i];
       points[i] = {q.x(), q.y(), q.z(), 0.0f};
       bit[i] = texels.source[tile.begin + i] - tile.begin;
       is_mild[i] = !(seen_well[bit[i] / 64] >> (bit[i] % 64) & 1);
@@ -79,6 +80,7 @@ TilePainter::TilePainter(const TextureState& state,
                          const WarpLattice& lattice,
                          const BakeOptions& options,
                          const BakeTexels& texels,
+                         const std::vector<Vector3f>& points,
                          const TileSights& sights)
     : state_(state),
       atlas_(atlas),
@@ -87,6 +89,7 @@ TilePainter::TilePainter(const TextureState& state,
       warps_(state.warps.begin(), state.warps.end()),
       options_(options),
       texels_(texels),
+      points_(points),
       sights_(sights),
       has_powers_(options.angle_power > 0 || options.depth_power > 0 ||
                   options.sharpness_power > 0),
@@ -163,7 +166,7 @@ BakeReport TilePainter::Total() const {
 float TilePainter::Powers(const View& view,
                           size_t texel,
                           const Chart& chart) const {
-  const Vector3f& q = texels_.q[texel];
+  const Vector3f& q = points_[texel];
   const Vector3f normal =
       TexelNormal(state_.mesh, state_.planes, chart, texels_, texel);
   const float cosine = std::abs(normal.dot((view.center - q).normalized()));
@@ -282,7 +285,8 @@ void TilePainter::SumRobustly(TileWork* work, BakeReport* report) const {
 
 void TilePainter::PaintTile(size_t t) {
   const BakeTile& tile = texels_.tiles[t];
-  TileWork work(tile, texels_, atlas_.charts[tile.chart], sights_.ViewsOf(t));
+  TileWork work(
+      tile, texels_, points_, atlas_.charts[tile.chart], sights_.ViewsOf(t));
   BakeReport& report = reports_[t];
   if (options_.robust_luma > 0) {
     SumRobustly(&work, &report);

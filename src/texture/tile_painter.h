@@ -16,13 +16,15 @@ namespace facet {
 
 class TilePainter {
  public:
-  // All must outlive the painter. Arguments: TextureBaker.
+  // All must outlive the painter. `points` are the q of the state, a texel.
+  // Other arguments: TextureBaker.
   TilePainter(const TextureState& state,
               const Atlas& atlas,
               const Pinhole& camera,
               const WarpLattice& lattice,
               const BakeOptions& options,
               const BakeTexels& texels,
+              const std::vector<Eigen::Vector3f>& points,
               const TileSights& sights);
 
   // Pages of the atlas. only_faces: TextureBaker::BakeAs. report may be null.
@@ -67,6 +69,7 @@ class TilePainter {
   const std::vector<float> warps_;
   const BakeOptions& options_;
   const BakeTexels& texels_;
+  const std::vector<Eigen::Vector3f>& points_;
   const TileSights& sights_;
   const bool has_powers_;  // weights differ by more than the ramp
   const float exposure_share_;

@@ -9,6 +9,10 @@
 #include <string>
 #include <utility>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 namespace facet {
 namespace {
 
@@ -86,5 +90,11 @@ double Stopwatch::WallSeconds() const {
 }
 
 double Stopwatch::CpuSecondsSince() const { return CpuSeconds() - cpu_start_; }
+
+void ReturnFreedMemory() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
+}
 
 }  // namespace facet

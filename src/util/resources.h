@@ -34,4 +34,8 @@ class Stopwatch {
   double cpu_start_;
 };
 
+// Gives memory that was freed back to the system, where the allocator keeps it
+// (glibc): the next stage of a run needs other sizes.
+void ReturnFreedMemory();
+
 }  // namespace facet

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "util/errors.h"
 #include "util/resources.h"
 #include "util/warnings.h"
 
@@ -55,6 +56,30 @@ TEST(MemoryEstimate, FollowsTheOptions) {
   o = options;
   o.photometric.smoothing_sigma_px = 0;
   EXPECT_LT(EstimateMemory(o, Room()).photometric_mb, room.photometric_mb);
+}
+
+// Breaks if a budget changes what it does not have to, promises what the
+// estimate denies, or lets a run start that does not fit.
+TEST(FitIntoMemory, SavesOnlyWhatItMustAndRefusesTheRest) {
+  const auto trace_after = [](double limit_mb) {
+    ReconstructOptions options;
+    options.atlas.texel_size_m = 0.01;  // images decide
+    options.max_memory_gb = limit_mb / 1024;
+    FitIntoMemory(Room(), &options);
+    EXPECT_TRUE(limit_mb == 0 || Peak(options, Room()) <= limit_mb);
+    return options.photometric.solver.trace_rms_grey;
+  };
+  ReconstructOptions options;
+  options.atlas.texel_size_m = 0.01;
+  const double full = Peak(options, Room());
+  options.photometric.solver.trace_rms_grey = false;
+  const double least = Peak(options, Room());
+  EXPECT_LT(least, full);
+  EXPECT_TRUE(trace_after(0));
+  EXPECT_TRUE(trace_after(full + 1));
+  EXPECT_FALSE(trace_after(full - 1));
+  EXPECT_FALSE(trace_after(least + 1));
+  EXPECT_THROW(trace_after(least - 1), OptionsError);
 }
 
 // Nothing overflows and nothing is negative at the ends of the range.

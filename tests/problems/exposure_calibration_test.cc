@@ -241,24 +241,23 @@ TEST(ExposureCalibration, ImpossibleKeyframesStayAsTaken) {
 TEST(KeyframeImages, ExposuresChangeLumaAndChannelsAlike) {
   KeyframeImages images;
   images.rgb = {cv::Mat(4, 5, CV_8UC3, cv::Scalar(51, 102, 204))};
-  images.luma.resize(1);
-  images.smooth.resize(1);
   Exposure exposure;
   exposure.gain = {1.5f, 0.5f, 1.0f};
   exposure.offset = {-0.1f, 0.2f, 0.0f};
   SetExposures({exposure}, 0.8, &images);
   const float red = 0.2f, green = 0.4f, blue = 0.8f;  // 0.2 stays, 0.4 stays
-  EXPECT_NEAR(images.luma[0].at<float>(2, 2),
+  EXPECT_NEAR(LumaOf(images, 0).at<float>(2, 2),
               0.299f * red + 0.587f * green + 0.114f * blue,
               1e-6);
-  EXPECT_NEAR(
-      images.smooth[0].at<float>(1, 3), images.luma[0].at<float>(2, 2), 1e-6);
+  EXPECT_NEAR(images.smooth[0].at<float>(1, 3),
+              LumaOf(images, 0).at<float>(2, 2),
+              1e-6);
   const auto channels = SmoothChannels(images.rgb[0], exposure, 0);
   EXPECT_NEAR(channels[0].at<float>(0, 0), red, 1e-6);
   EXPECT_NEAR(channels[1].at<float>(0, 0), green, 1e-6);
   EXPECT_NEAR(exposure.Corrected({51, 102, 204})[1], 255 * green, 1e-3);
   SetExposures({}, 0, &images);
-  EXPECT_NEAR(images.luma[0].at<float>(2, 2),
+  EXPECT_NEAR(images.smooth[0].at<float>(2, 2),
               LumaFromRgb(images.rgb[0]).at<float>(2, 2),
               1e-7);
 }

@@ -167,7 +167,7 @@ TEST(Bake, SteepFacesAreColouredWhereTheyAre) {
   visibility.test_depth_edges = visibility.test_mesh_edges = false;
   const std::vector<Plane> planes = scene.Planes();
   const std::vector<int> frames = sequence.AllFrames();
-  const KeyframeImages images = LoadKeyframeImages(sequence, frames, 0);
+  const KeyframeImages images = LoadKeyframeColors(sequence, frames);
   const std::vector<Pose> poses = sequence.AllPoses();
   const std::vector<double> warps;
   const TextureState state = {scene.mesh, planes, images, poses, warps};
@@ -261,15 +261,16 @@ TEST(Bake, RefusesBadPowers) {
 TEST(KeyframeImages, LumaAndSmoothMatchTheImage) {
   // A grey ramp keeps its values under luma and, inside, under the Gaussian.
   Wall wall(2);
-  const auto images = LoadKeyframeImages(wall.sequence, {1, 0}, 0.8);
+  KeyframeImages images = LoadKeyframeColors(wall.sequence, {1, 0});
+  SetExposures({}, 0.8, &images);
   ASSERT_EQ(images.size(), 2u);
   const auto& c = wall.sequence.color(1).at<cv::Vec3b>(100, 100);
-  EXPECT_NEAR(images.luma[0].at<float>(100, 100),
+  const cv::Mat luma = LumaOf(images, 0);
+  EXPECT_NEAR(luma.at<float>(100, 100),
               (0.299 * c[0] + 0.587 * c[1] + 0.114 * c[2]) / 255,
               1e-5);
-  EXPECT_NEAR(images.smooth[0].at<float>(120, 160),
-              images.luma[0].at<float>(120, 160),
-              0.01);
+  EXPECT_NEAR(
+      images.smooth[0].at<float>(120, 160), luma.at<float>(120, 160), 0.01);
 }
 
 }  // namespace

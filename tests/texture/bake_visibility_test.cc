@@ -57,7 +57,7 @@ TEST(Bake, AnotherStateUsesTheSameKeyframes) {
   // lookups, not the second's. Breaks if poses or planes of the two are mixed.
   Wall wall;
   const std::vector<int> frames = wall.sequence.AllFrames();
-  const KeyframeImages images = LoadKeyframeImages(wall.sequence, frames, 0);
+  const KeyframeImages images = LoadKeyframeColors(wall.sequence, frames);
   const std::vector<Plane> planes = wall.scene.Planes();
   const std::vector<Pose> poses = wall.sequence.AllPoses();
   const std::vector<double> warps;

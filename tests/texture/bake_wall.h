@@ -68,8 +68,8 @@ class Wall {
 
   std::vector<cv::Mat> Bake(const std::vector<double>& warps = {}) {
     const auto frames = sequence.AllFrames();
-    KeyframeImages images = LoadKeyframeImages(sequence, frames, 0);
-    SetExposures(exposures, 0, &images);
+    KeyframeImages images = LoadKeyframeColors(sequence, frames);
+    images.exposures = exposures;
     const std::vector<Plane> planes = scene.Planes();
     const std::vector<Pose> poses = sequence.AllPoses();
     const TextureState state = {scene.mesh, planes, images, poses, warps};
