@@ -213,6 +213,23 @@ void RunLevel(const TextureProblem& problem,
   }
 }
 
+// Coarse levels have energies of their own: what they found must also be better
+// at the finest one, or its solution starts from `start`.
+void UndoIfWorse(const TextureProblem& problem,
+                 const EnergyWeights& weights,
+                 const ReconState& start,
+                 double start_objective,
+                 const std::function<void(const std::string&)>& print,
+                 ReconState* state) {
+  state->colors.assign(problem.NumChannels() * problem.texels.size(), 0.0f);
+  SolveColors(problem, state);
+  if (EvaluateEnergy(problem, weights, *state).Objective() <= start_objective) {
+    return;
+  }
+  print("  the coarse levels raised the energy of the finest: undone");
+  *state = start;
+}
+
 void CountFrames(const TextureProblem& problem, PhotometricResult* result) {
   result->plane_texels = problem.plane_texels;
   result->plane_frames.assign(problem.NumPlanes(), 0);
@@ -362,6 +379,10 @@ PhotometricResult RunPhotometricStage(
              print,
              &state,
              &result.trace);
+  }
+  if (levels > 1) {
+    UndoIfWorse(
+        problem, weights, start, result.initial.Objective(), print, &state);
   }
   RunLevel(
       problem, weights, options, schedule, 0, print, &state, &result.trace);
