@@ -4,6 +4,7 @@
 // Which collapses are admissible, what they do, and in which order they come.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "mesh/simplify_kernel.h"
 
@@ -286,13 +287,16 @@ void Collapser::RunCounts() {
 
 void Collapser::RunBudget() {
   Impl& m = *impl_;
-  const double budget = m.options.target_faces > 0
-                            ? m.options.target_faces
-                            : m.options.faces_per_m2 * m.total_area;
+  const bool by_area = m.options.target_faces == 0;
+  const double budget =
+      by_area ? m.options.faces_per_m2 * m.total_area : m.options.target_faces;
+  const double max_cost =
+      by_area ? m.options.max_cost_m4 : std::numeric_limits<double>::max();
   m.Fill(kInner | kBorder);
   m.Run(
-      [&m, budget](EdgeHandle, const Collapse& plan) {
-        return m.num_faces > budget || m.ErrorOf(plan) < m.options.free_error_m;
+      [&m, budget, max_cost](EdgeHandle, const Collapse& plan) {
+        return (m.num_faces > budget && plan.cost <= max_cost) ||
+               m.ErrorOf(plan) < m.options.free_error_m;
       },
       [] { return false; });
   m.RemoveFlatFaces();
