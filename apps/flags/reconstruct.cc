@@ -44,8 +44,8 @@ DEFINE_uint64(seed, 0, "recorded; nothing in the pipeline is random today");
 DEFINE_bool(previews, true, "draw previews/*.png");
 DEFINE_double(max_memory_gb,
               facet::ReconstructOptions().max_memory_gb,
-              "save memory where possible and refuse what needs more, 0 = no "
-              "limit; the model does not depend on it");
+              "save memory where possible and refuse what the plan expects to "
+              "need more, 0 = no limit; the model does not depend on it");
 DEFINE_bool(trace_states,
             SolverConfig().trace_states,
             "keep poses and planes after every phase (trace_states.bin), from "

@@ -52,7 +52,8 @@ MemoryEstimate EstimateMemory(const ReconstructOptions& options,
 
 // Makes a run fit into options->max_memory_gb: without rms_grey in the trace
 // but for its first and last state, unless it fits anyway. The model does not
-// depend on it. Throws OptionsError if that is not enough.
+// depend on it. Throws OptionsError if that is not enough. It is the estimate
+// that is held to the limit, not the run: redkitchen at 1.1 GB took 2 % more.
 void FitIntoMemory(const SceneSize& size, ReconstructOptions* options);
 
 // "765221 faces, 80.2 m2, 184 keyframes of 640x480: ..." for the plan line.
