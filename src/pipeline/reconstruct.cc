@@ -14,6 +14,7 @@
 #include "pipeline/report.h"
 #include "pipeline/stage_clock.h"
 #include "util/atomic_file.h"
+#include "util/background.h"
 #include "util/errors.h"
 #include "util/parallel_for.h"
 #include "util/resources.h"
@@ -41,7 +42,7 @@ class Run {
     CheckFolder();
     CheckOptions(options_);
     sequence_ = OpenSequence(options_.sequence_path, options_.sequence);
-    report_["stages"] = json::array();
+    ReadImagesMeanwhile();
     RunPartition();
     if (Wanted(Stage::kSimplify)) RunSimplify();
     if (Wanted(Stage::kKeyframes)) RunKeyframes();
@@ -67,6 +68,16 @@ class Run {
                          " is not empty: give another folder, --overwrite, or "
                          "go on in it with --from_stage");
     }
+  }
+
+  // The mesh stages run on one thread for long: images are decoded on others.
+  void ReadImagesMeanwhile() {
+    if (FromFile(Stage::kKeyframes) || !Wanted(Stage::kKeyframes)) return;
+    reading_images_ = std::make_unique<Background>([this] {
+      choice_ = ChooseKeyframes(*sequence_, options_.keyframes);
+      if (!Wanted(Stage::kPhotometric)) return;
+      images_ = LoadKeyframeColors(*sequence_, choice_.keyframes);
+    });
   }
 
   StageClock Begin(const char* stage) {
@@ -204,8 +215,10 @@ class Run {
     }
     BeginWriting();
     WarnOfConventions(*sequence_, dense_.mesh, options_.visibility);
-    keyframes_.keyframes =
-        SelectKeyframes(*sequence_, options_.keyframes, &keyframes_.blur);
+    reading_images_->Finish();
+    CheckKeyframes(*sequence_, choice_);
+    keyframes_.keyframes = choice_.keyframes;
+    keyframes_.blur = choice_.blur;
     keyframes_.report =
         KeyframeReport(*sequence_, keyframes_.keyframes, options_.keyframes);
     keyframes_.warnings = StageWarnings();
@@ -223,7 +236,9 @@ class Run {
     for (const int k : keyframes_.keyframes) {
       initial_poses_.push_back(sequence_->color_cam_from_world(k));
     }
-    images_ = LoadKeyframeColors(*sequence_, keyframes_.keyframes);
+    if (images_.size() == 0) {
+      images_ = LoadKeyframeColors(*sequence_, keyframes_.keyframes);
+    }
     atlas_ =
         BuildAtlas(simplified_.mesh, simplified_.partition, options_.atlas);
     if (options_.plane_init == PlaneInit::kSimplified) {
@@ -382,6 +397,8 @@ class Run {
   std::vector<Plane> initial_planes_;
   KeyframeImages images_;
   Atlas atlas_;
+  KeyframeChoice choice_;
+  std::unique_ptr<Background> reading_images_;  // into images_ and choice_
   bool writing_ = false;
   ptrdiff_t warnings_before_ = 0;
   json stages_ = json::array(), export_report_, report_ = json::object();

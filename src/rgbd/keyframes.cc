@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "rgbd/blur.h"
 #include "util/errors.h"
@@ -27,6 +28,17 @@ void CheckOptions(const KeyframeOptions& options) {
   }
 }
 
+std::vector<int> Candidates(const std::vector<Frame>& frames,
+                            const KeyframeOptions& options) {
+  std::vector<int> candidates;
+  for (size_t i = 0; i < frames.size(); ++i) {
+    if (frames[i].usable && !IsHeldOut(frames[i].number, options)) {
+      candidates.push_back(static_cast<int>(i));
+    }
+  }
+  return candidates;
+}
+
 double FrameBlur(const RgbdSequence& sequence, int frame_idx) {
   const cv::Mat luma = sequence.LoadLuma(frame_idx);
   return CreteBlur({luma.ptr<float>(),
@@ -36,17 +48,34 @@ double FrameBlur(const RgbdSequence& sequence, int frame_idx) {
 }
 
 void ReportUnreadable(const std::vector<std::string>& problems, size_t tried) {
-  size_t count = 0;
-  std::string first;
-  for (const std::string& problem : problems) {
-    if (!problem.empty() && count++ == 0) first = problem;
-  }
+  const size_t count = problems.size();
   if (count == 0) return;
-  const std::string sentence = std::to_string(count) + " of " +
-                               std::to_string(tried) +
-                               " frames cannot be read, the first: " + first;
+  const std::string sentence =
+      std::to_string(count) + " of " + std::to_string(tried) +
+      " frames cannot be read, the first: " + problems.front();
   if (count > kMaxUnreadableShare * tried) throw InputError(sentence);
   AddWarning(sentence + ": skipped");
+}
+
+// Fills in the blur of the candidates.
+void MeasureBlur(const RgbdSequence& sequence,
+                 const std::vector<int>& candidates,
+                 KeyframeChoice* choice) {
+  choice->blur.assign(sequence.frames().size(),
+                      std::numeric_limits<double>::quiet_NaN());
+  std::vector<std::string> problems(candidates.size());
+  Progress progress("keyframes", candidates.size());
+  ParallelFor(0, candidates.size(), [&](size_t i) {
+    try {
+      choice->blur[candidates[i]] = FrameBlur(sequence, candidates[i]);
+    } catch (const InputError& e) {
+      problems[i] = e.what();
+    }
+    progress.Add();
+  });
+  for (std::string& problem : problems) {
+    if (!problem.empty()) choice->problems.push_back(std::move(problem));
+  }
 }
 
 // The sharpest candidate with a blur in every window.
@@ -86,39 +115,22 @@ bool IsHeldOut(int frame_number, const KeyframeOptions& options) {
   return stride > 0 && frame_number % stride == options.holdout_offset % stride;
 }
 
-std::vector<int> SelectKeyframes(const RgbdSequence& sequence,
-                                 const KeyframeOptions& options,
-                                 std::vector<double>* blur) {
+KeyframeChoice ChooseKeyframes(const RgbdSequence& sequence,
+                               const KeyframeOptions& options) {
   CheckOptions(options);
   const std::vector<Frame>& frames = sequence.frames();
-  std::vector<int> candidates;
-  for (size_t i = 0; i < frames.size(); ++i) {
-    if (frames[i].usable && !IsHeldOut(frames[i].number, options)) {
-      candidates.push_back(static_cast<int>(i));
-    }
-  }
-
-  std::vector<double> blurs(frames.size(),
-                            std::numeric_limits<double>::quiet_NaN());
-  std::vector<std::string> problems(candidates.size());
-  Progress progress("keyframes", candidates.size());
-  ParallelFor(0, candidates.size(), [&](size_t i) {
-    try {
-      blurs[candidates[i]] = FrameBlur(sequence, candidates[i]);
-    } catch (const InputError& e) {
-      problems[i] = e.what();
-    }
-    progress.Add();
-  });
-
+  const std::vector<int> candidates = Candidates(frames, options);
+  KeyframeChoice choice;
+  choice.tried = candidates.size();
+  MeasureBlur(sequence, candidates, &choice);
   // The next sharpest steps in for a keyframe whose depth cannot be read. Only
   // keyframes need depth: each is decoded once.
-  std::vector<int> keyframes;
   std::vector<bool> depth_read(frames.size(), false);
   for (bool complete = false; !complete;) {
-    keyframes = SharpestInWindows(frames, candidates, blurs, options.window);
+    choice.keyframes =
+        SharpestInWindows(frames, candidates, choice.blur, options.window);
     std::vector<int> unread;
-    for (const int k : keyframes) {
+    for (const int k : choice.keyframes) {
       if (!depth_read[k]) unread.push_back(k);
     }
     std::vector<std::string> depth_problems(unread.size());
@@ -129,20 +141,30 @@ std::vector<int> SelectKeyframes(const RgbdSequence& sequence,
     for (size_t i = 0; i < unread.size(); ++i) {
       depth_read[unread[i]] = true;
       if (depth_problems[i].empty()) continue;
-      problems.push_back(depth_problems[i]);
-      blurs[unread[i]] = std::numeric_limits<double>::quiet_NaN();
+      choice.problems.push_back(depth_problems[i]);
+      choice.blur[unread[i]] = std::numeric_limits<double>::quiet_NaN();
       complete = false;
     }
   }
-  ReportUnreadable(problems, candidates.size());
-  if (keyframes.empty()) {
+  return choice;
+}
+
+void CheckKeyframes(const RgbdSequence& sequence,
+                    const KeyframeChoice& choice) {
+  ReportUnreadable(choice.problems, choice.tried);
+  if (choice.keyframes.empty()) {
     throw UnsolvableError(
         "no keyframe in '" + sequence.path() +
         "': every usable frame is held out or unreadable, lower the share "
         "held out");
   }
-  if (blur != nullptr) *blur = std::move(blurs);
-  return keyframes;
+}
+
+std::vector<int> SelectKeyframes(const RgbdSequence& sequence,
+                                 const KeyframeOptions& options) {
+  KeyframeChoice choice = ChooseKeyframes(sequence, options);
+  CheckKeyframes(sequence, choice);
+  return std::move(choice.keyframes);
 }
 
 }  // namespace facet

@@ -5,6 +5,8 @@
 // (paper, Sec. 3.3; method ch. 5).
 #pragma once
 
+#include <cstddef>
+#include <string>
 #include <vector>
 
 #include "rgbd/sequence.h"
@@ -23,14 +25,25 @@ struct KeyframeOptions {
 // Is the frame kept away from mapping?
 bool IsHeldOut(int frame_number, const KeyframeOptions& options);
 
-// Indices into sequence.frames(), ascending. Usable frames only; ties go to the
-// lower number. `blur`, if given, receives the Crete blur of every frame read
-// (NaN for others), by frame index. Frames whose colour, or whose depth as a
-// keyframe, does not decode are skipped and counted in a warning. Throws
-// InputError if these are more than 20 %, UnsolvableError if no keyframe
-// remains.
+struct KeyframeChoice {
+  std::vector<int> keyframes;  // indices into sequence.frames(), ascending
+  std::vector<double> blur;    // Crete blur by frame index, NaN = not measured
+  size_t tried = 0;            // frames read
+  std::vector<std::string> problems;  // of those that do not decode: skipped
+};
+
+// Usable frames only; ties go to the lower number. Frames whose colour, or
+// whose depth as a keyframe, does not decode are skipped. Warns of nothing and
+// writes nothing, so it may run beside other work. Throws OptionsError.
+KeyframeChoice ChooseKeyframes(const RgbdSequence& sequence,
+                               const KeyframeOptions& options);
+
+// Warns of the frames that were skipped. Throws InputError if these are more
+// than 20 %, UnsolvableError if there is no keyframe.
+void CheckKeyframes(const RgbdSequence& sequence, const KeyframeChoice& choice);
+
+// Both in one: the keyframes.
 std::vector<int> SelectKeyframes(const RgbdSequence& sequence,
-                                 const KeyframeOptions& options,
-                                 std::vector<double>* blur = nullptr);
+                                 const KeyframeOptions& options);
 
 }  // namespace facet

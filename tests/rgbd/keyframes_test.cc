@@ -74,12 +74,12 @@ TEST(Keyframes, UnusableFramesAreSkipped) {
   files.WriteTexture(2, 2);
   files.WritePose(0, Eigen::Matrix4d::Zero());
   const auto sequence = OpenSequence(files.path(), SequenceOptions());
-  std::vector<double> blur;
-  EXPECT_EQ(SelectKeyframes(*sequence, Window(5), &blur),
-            (std::vector<int>{1}));
-  ASSERT_EQ(blur.size(), 3u);
-  EXPECT_TRUE(std::isnan(blur[0]));
-  EXPECT_LT(blur[1], blur[2]);
+  const KeyframeChoice choice = ChooseKeyframes(*sequence, Window(5));
+  EXPECT_EQ(choice.tried, 2u);
+  EXPECT_EQ(choice.keyframes, (std::vector<int>{1}));
+  ASSERT_EQ(choice.blur.size(), 3u);
+  EXPECT_TRUE(std::isnan(choice.blur[0]));
+  EXPECT_LT(choice.blur[1], choice.blur[2]);
 }
 
 // One image in ten that does not decode is skipped, three are an error.
@@ -97,14 +97,13 @@ TEST(Keyframes, SameAtAnyThreadCount) {
   const TinySequence files({0, 1, 2, 3, 4, 5, 6, 7});
   for (int i = 0; i < 8; ++i) files.WriteTexture(i, 0.4 + 0.3 * ((5 * i) % 8));
   const auto sequence = OpenSequence(files.path(), SequenceOptions());
-  std::vector<double> one, many;
   SetNumThreads(1);
-  const auto first = SelectKeyframes(*sequence, Window(3), &one);
+  const KeyframeChoice one = ChooseKeyframes(*sequence, Window(3));
   SetNumThreads(4);
-  const auto second = SelectKeyframes(*sequence, Window(3), &many);
+  const KeyframeChoice many = ChooseKeyframes(*sequence, Window(3));
   SetNumThreads(0);
-  EXPECT_EQ(first, second);
-  EXPECT_EQ(one, many);
+  EXPECT_EQ(one.keyframes, many.keyframes);
+  EXPECT_EQ(one.blur, many.blur);
 }
 
 TEST(Keyframes, SenselessOptionsAreRefused) {
