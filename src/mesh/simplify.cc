@@ -8,6 +8,7 @@
 #include "mesh/adjacency.h"
 #include "mesh/partition.h"
 #include "mesh/simplify_internal.h"
+#include "util/background.h"
 #include "util/errors.h"
 
 namespace facet {
@@ -56,10 +57,12 @@ SimplifyResult SimplifyByPlanes(const TriMesh& mesh,
   CheckOptions(options);
   SimplifyResult result;
   SimplifyReport& report = result.report;
-  report.checks_before = CheckMesh(mesh);
   report.faces_before = static_cast<int>(mesh.NumFaces());
-  report.flipped_before = FindFlippedFaces(mesh, partition);
-  report.border_edges_before = CountBorderEdges(mesh, partition.face_cluster);
+  Background checks([&] {
+    report.checks_before = CheckMesh(mesh);
+    report.flipped_before = FindFlippedFaces(mesh, partition);
+    report.border_edges_before = CountBorderEdges(mesh, partition.face_cluster);
+  });
 
   Collapser collapser(mesh, partition, options);
   if (options.stop == SimplifyStop::kCounts) {
@@ -86,6 +89,7 @@ SimplifyResult SimplifyByPlanes(const TriMesh& mesh,
   report.flipped_after = FindFlippedFaces(result.mesh, result.partition);
   report.border_edges_after =
       CountBorderEdges(result.mesh, result.partition.face_cluster);
+  checks.Finish();
   return result;
 }
 
