@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
+#include <utility>
 
 #include "mesh/mesh_checks.h"
 #include "mesh/mesh_io.h"
@@ -17,6 +18,7 @@
 #include "texture/seam_vertices.h"
 #include "util/atomic_file.h"
 #include "util/errors.h"
+#include "util/resources.h"
 
 namespace facet {
 namespace {
@@ -129,12 +131,12 @@ std::vector<PreviewView> DrawDense(const std::string& dir,
   return views;
 }
 
-void WritePreviews(const ReconstructOptions& options,
-                   const ExportInput& input,
-                   const TextureBaker& baker,
-                   const TexturedMesh& model) {
-  const std::string dir = options.output_path + "/previews";
-  const std::vector<PreviewView> views = DrawDense(dir, input);
+// The light mesh, and its texture after and before the optimisation.
+void DrawLight(const std::string& dir,
+               const std::vector<PreviewView>& views,
+               const ExportInput& input,
+               const TextureBaker& baker,
+               TexturedMesh model) {
   {
     const std::vector<SampledView> sampled =
         SampleViews(RayScene(model.mesh), model.mesh, views);
@@ -142,6 +144,8 @@ void WritePreviews(const ReconstructOptions& options,
         dir, sampled, model.mesh, input.simplified.partition.face_cluster);
     DrawTextured(dir, "after", sampled, model);
   }
+  model = TexturedMesh();
+  ReturnFreedMemory();
   const TriMesh& start = input.simplified.mesh;
   const std::vector<SampledView> sampled =
       SampleViews(RayScene(start), start, views);
@@ -177,6 +181,12 @@ json ExportRun(const ReconstructOptions& options, const ExportInput& input) {
                               input.images,
                               input.photometric.cam_from_world,
                               input.photometric.warps};
+  // Before the texture takes its memory.
+  const std::string previews = dir + "/previews";
+  std::vector<PreviewView> views;
+  if (options.previews) views = DrawDense(previews, input);
+  ReturnFreedMemory();
+
   const RayScene scene(input.final_mesh);
   const TextureBaker baker(state,
                            input.atlas,
@@ -187,13 +197,16 @@ json ExportRun(const ReconstructOptions& options, const ExportInput& input) {
                            options.visibility,
                            options.bake);
   BakeReport bake;
-  const TexturedMesh model =
-      MakeModel(input, input.final_mesh, baker.Bake(&bake));
-  const std::vector<std::string> pages = EncodePages(model);
-  ExportObj(dir, model, pages);
-  ExportGlb(dir + "/mesh.glb", model, pages);
+  TexturedMesh model = MakeModel(input, input.final_mesh, baker.Bake(&bake));
+  {
+    const std::vector<std::string> pages = EncodePages(model);
+    ExportObj(dir, model, pages);
+    ExportGlb(dir + "/mesh.glb", model, pages);
+  }
   WriteMasks(options, bake);
-  if (options.previews) WritePreviews(options, input, baker, model);
+  if (options.previews) {
+    DrawLight(previews, views, input, baker, std::move(model));
+  }
 
   const MeshChecks checks = CheckMesh(input.final_mesh);
   const FlippedFaces flipped =

@@ -18,9 +18,9 @@ constexpr double kBaseMb = 60;  // code, libraries, buffers
 constexpr double kBytesPerFace = 330, kBytesPerKeptFace = 70;
 constexpr double kColorBytes = 3, kDepthBytes = 2;  // a pixel
 constexpr double kLumaBytes = 4, kSmoothBytes = 4;  // while optimising
-constexpr double kSolverMb = 60;
+constexpr double kSolverMb = 180;
 constexpr double kBytesPerSampledTexel = 100, kBytesPerObservation = 11;
-constexpr double kBytesPerAtlasTexel = 180;
+constexpr double kBytesPerAtlasTexel = 150;
 constexpr double kSeenShare = 0.15;  // of the keyframes see a texel
 
 }  // namespace
@@ -53,9 +53,9 @@ MemoryEstimate EstimateMemory(const ReconstructOptions& options,
                               const SceneSize& size) {
   const PhotometricOptions& p = options.photometric;
   const double pixels = static_cast<double>(size.keyframes) * size.image_pixels;
-  const double kept = kBaseMb + (kBytesPerKeptFace * size.faces +
-                                 (kColorBytes + kDepthBytes) * pixels) /
-                                    kMb;
+  const double images_mb = (kColorBytes + kDepthBytes) * pixels / kMb;
+  const double kept =
+      kBaseMb + kBytesPerKeptFace * size.faces / kMb + images_mb;
   const bool keeps_luma = p.solver.trace_rms_grey && p.smoothing_sigma_px > 0;
   const double float_bytes = kSmoothBytes + (keeps_luma ? kLumaBytes : 0);
   // One coarser level of the pyramid at a time.
@@ -69,7 +69,8 @@ MemoryEstimate EstimateMemory(const ReconstructOptions& options,
     sampled = std::min(sampled, p.max_observations / views);
   }
   MemoryEstimate estimate;
-  estimate.mesh_mb = kBaseMb + kBytesPerFace * size.faces / kMb;
+  // Images are read meanwhile.
+  estimate.mesh_mb = kBaseMb + kBytesPerFace * size.faces / kMb + images_mb;
   estimate.photometric_mb =
       kept + kSolverMb + (float_bytes + coarse_bytes) * pixels / kMb +
       sampled * (kBytesPerSampledTexel + kBytesPerObservation * views) / kMb;

@@ -57,7 +57,9 @@ TextureBaker::TextureBaker(const TextureState& state,
               keyframes,
               state.color_cam_from_world,
               visibility,
-              options.mild_fallback) {}
+              options.mild_fallback) {
+  std::vector<Eigen::Vector3f>().swap(texels_.p);
+}
 
 std::vector<cv::Mat> TextureBaker::Bake(BakeReport* report) const {
   return TilePainter(state_,

@@ -118,7 +118,7 @@ class TextureBaker {
   const WarpLattice& lattice_;
   const Pinhole camera_;
   const BakeOptions options_;
-  const BakeTexels texels_;
+  BakeTexels texels_;  // without p
   const TileSights sights_;
 };
 

@@ -188,6 +188,39 @@ void Append(const std::vector<T>& from, std::vector<T>* to) {
   to->insert(to->end(), from.begin(), from.end());
 }
 
+// Charts are made in batches of about so many pixels, so that only one of them
+// stands beside the whole. Enough for many threads.
+constexpr size_t kBatchPixels = 1 << 21;
+
+size_t NumPixels(const Chart& chart) {
+  return static_cast<size_t>(chart.width) * chart.height;
+}
+
+size_t EndOfBatch(const Atlas& atlas, size_t begin) {
+  size_t end = begin, pixels = 0;
+  while (end < atlas.charts.size() && pixels < kBatchPixels) {
+    pixels += NumPixels(atlas.charts[end++]);
+  }
+  return end;
+}
+
+void AppendChart(BakeTexels part, BakeTexels* all) {
+  const auto base = static_cast<uint32_t>(all->size());
+  all->chart_tiles.push_back(static_cast<uint32_t>(all->tiles.size()));
+  for (BakeTile tile : part.tiles) {
+    tile.begin += base;
+    tile.owned_end += base;
+    tile.end += base;
+    all->tiles.push_back(tile);
+  }
+  for (uint32_t& source : part.source) source += base;
+  Append(part.p, &all->p);
+  Append(part.q, &all->q);
+  Append(part.pixel, &all->pixel);
+  Append(part.source, &all->source);
+  Append(part.face, &all->face);
+}
+
 }  // namespace
 
 BakeTexels MakeBakeTexels(const TriMesh& mesh,
@@ -195,38 +228,24 @@ BakeTexels MakeBakeTexels(const TriMesh& mesh,
                           const Atlas& atlas,
                           int ring_px,
                           int share_px) {
-  const size_t num_charts = atlas.charts.size();
-  std::vector<BakeTexels> of_chart(num_charts);
-  ParallelFor(0, num_charts, [&](size_t c) {
-    of_chart[c] =
-        ChartTexelizer(
-            mesh, planes, atlas, static_cast<int>(c), ring_px, share_px)
-            .Run();
-  });
+  size_t most = 0;
+  for (const Chart& chart : atlas.charts) most += NumPixels(chart);
   BakeTexels all;
-  size_t total = 0;
-  for (const BakeTexels& part : of_chart) total += part.size();
-  all.p.reserve(total);
-  all.q.reserve(total);
-  all.pixel.reserve(total);
-  all.source.reserve(total);
-  all.face.reserve(total);
-  for (BakeTexels& part : of_chart) {
-    const auto base = static_cast<uint32_t>(all.size());
-    all.chart_tiles.push_back(static_cast<uint32_t>(all.tiles.size()));
-    for (BakeTile tile : part.tiles) {
-      tile.begin += base;
-      tile.owned_end += base;
-      tile.end += base;
-      all.tiles.push_back(tile);
-    }
-    for (uint32_t& source : part.source) source += base;
-    Append(part.p, &all.p);
-    Append(part.q, &all.q);
-    Append(part.pixel, &all.pixel);
-    Append(part.source, &all.source);
-    Append(part.face, &all.face);
-    part = BakeTexels();
+  // More than there will be, but what is not written to takes no memory.
+  all.p.reserve(most);
+  all.q.reserve(most);
+  all.pixel.reserve(most);
+  all.source.reserve(most);
+  all.face.reserve(most);
+  for (size_t begin = 0, end; begin < atlas.charts.size(); begin = end) {
+    end = EndOfBatch(atlas, begin);
+    std::vector<BakeTexels> batch(end - begin);
+    ParallelFor(0, batch.size(), [&](size_t i) {
+      const int chart = static_cast<int>(begin + i);
+      batch[i] =
+          ChartTexelizer(mesh, planes, atlas, chart, ring_px, share_px).Run();
+    });
+    for (BakeTexels& part : batch) AppendChart(std::move(part), &all);
   }
   all.chart_tiles.push_back(static_cast<uint32_t>(all.tiles.size()));
   return all;

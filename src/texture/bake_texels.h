@@ -28,16 +28,17 @@ struct BakeTile {
 struct BakeTexels {
   std::vector<BakeTile> tiles;        // by chart
   std::vector<uint32_t> chart_tiles;  // charts + 1: first tile of each
-  std::vector<Eigen::Vector3f> p;     // on the mesh, world [m]
-  std::vector<Eigen::Vector3f> q;     // to be coloured, world [m]
-  std::vector<uint32_t> pixel;        // row * chart.width + column
+  // On the mesh, world [m]. Of use for visibility only, and then released.
+  std::vector<Eigen::Vector3f> p;
+  std::vector<Eigen::Vector3f> q;  // to be coloured, world [m]
+  std::vector<uint32_t> pixel;     // row * chart.width + column
   // Index of the owned texel whose visibility this one shares: the first of its
   // tile in the same square of `share_px` texels. Gutter texels share that of
   // the texel they follow.
   std::vector<uint32_t> source;
   std::vector<int> face;  // gutter: of the texel they follow
 
-  size_t size() const { return p.size(); }
+  size_t size() const { return pixel.size(); }
 };
 
 // p from the vertices of `mesh` (which may have moved since the atlas was
