@@ -49,12 +49,17 @@ void SubtractPlanes(const JointSystem& system,
 // Upper Cholesky factor of a symmetric matrix given by its upper triangle;
 // raises the diagonal until it exists.
 Eigen::MatrixXd UpperFactor(const Eigen::MatrixXd& upper) {
-  Eigen::MatrixXd symmetric = upper.selfadjointView<Eigen::Upper>();
+  Eigen::VectorXd diagonal = upper.diagonal();
   for (double shift = kJointShift;; shift *= 10) {
-    const Eigen::LLT<Eigen::MatrixXd, Eigen::Upper> llt(symmetric);
-    if (llt.info() == Eigen::Success) return llt.matrixU();
-    for (Eigen::Index i = 0; i < symmetric.rows(); ++i) {
-      symmetric(i, i) += shift * std::abs(upper(i, i)) + kAbsoluteShift;
+    Eigen::MatrixXd factor = upper;
+    factor.diagonal() = diagonal;
+    const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>, Eigen::Upper> llt(factor);
+    if (llt.info() == Eigen::Success) {
+      factor.triangularView<Eigen::StrictlyLower>().setZero();
+      return factor;
+    }
+    for (Eigen::Index i = 0; i < diagonal.size(); ++i) {
+      diagonal[i] += shift * std::abs(upper(i, i)) + kAbsoluteShift;
     }
   }
 }
