@@ -118,28 +118,14 @@ void WriteMasks(const ReconstructOptions& options, const BakeReport& report) {
   }
 }
 
-// Returns where the pictures are taken from.
-std::vector<PreviewView> DrawDense(const std::string& dir,
-                                   const ExportInput& input) {
-  const TriMesh& dense = input.dense.mesh;
-  const RayScene scene(dense);
-  const std::vector<PreviewView> views =
-      ChooseViews(scene, dense, input.initial_cam_from_world);
-  const std::vector<SampledView> sampled = SampleViews(scene, dense, views);
-  DrawInput(dir, sampled, dense);
-  DrawPlanes(dir, sampled, dense, input.dense.partition.face_cluster);
-  return views;
-}
-
 // The light mesh, and its texture after and before the optimisation.
 void DrawLight(const std::string& dir,
-               const std::vector<PreviewView>& views,
                const ExportInput& input,
                const TextureBaker& baker,
                TexturedMesh model) {
   {
     const std::vector<SampledView> sampled =
-        SampleViews(RayScene(model.mesh), model.mesh, views);
+        SampleViews(RayScene(model.mesh), model.mesh, input.views);
     DrawWireframe(
         dir, sampled, model.mesh, input.simplified.partition.face_cluster);
     DrawTextured(dir, "after", sampled, model);
@@ -148,7 +134,7 @@ void DrawLight(const std::string& dir,
   ReturnFreedMemory();
   const TriMesh& start = input.simplified.mesh;
   const std::vector<SampledView> sampled =
-      SampleViews(RayScene(start), start, views);
+      SampleViews(RayScene(start), start, input.views);
   KeyframeImages as_taken = input.images;
   as_taken.exposures.clear();
   const TextureState before = {
@@ -181,12 +167,6 @@ json ExportRun(const ReconstructOptions& options, const ExportInput& input) {
                               input.images,
                               input.photometric.cam_from_world,
                               input.photometric.warps};
-  // Before the texture takes its memory.
-  const std::string previews = dir + "/previews";
-  std::vector<PreviewView> views;
-  if (options.previews) views = DrawDense(previews, input);
-  ReturnFreedMemory();
-
   const RayScene scene(input.final_mesh);
   const TextureBaker baker(state,
                            input.atlas,
@@ -205,7 +185,7 @@ json ExportRun(const ReconstructOptions& options, const ExportInput& input) {
   }
   WriteMasks(options, bake);
   if (options.previews) {
-    DrawLight(previews, views, input, baker, std::move(model));
+    DrawLight(dir + "/previews", input, baker, std::move(model));
   }
 
   const MeshChecks checks = CheckMesh(input.final_mesh);

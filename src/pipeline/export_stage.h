@@ -9,6 +9,7 @@
 
 #include "pipeline/artefacts.h"
 #include "pipeline/config.h"
+#include "render/preview_views.h"
 #include "rgbd/trajectory_io.h"
 #include "texture/atlas.h"
 #include "texture/keyframe_images.h"
@@ -27,6 +28,7 @@ struct ExportInput {
   const TriMesh& final_mesh;
   const Atlas& atlas;
   const KeyframeImages& images;
+  const std::vector<PreviewView>& views;  // of the previews
 };
 
 // poses.txt: all usable frames in the convention of the pose files. Keyframes
@@ -38,8 +40,8 @@ std::vector<NumberedPose> RunPoses(const RgbdSequence& sequence,
                                    const std::vector<Pose>& cam_from_world);
 
 // Writes mesh.obj, mesh.mtl, texture_*.png, mesh.glb, partition.ply,
-// simplified.ply, planes.json, poses.txt, previews/*.png. Returns the stage's
-// part of report.json.
+// simplified.ply, planes.json, poses.txt and the previews of the light mesh.
+// Returns the stage's part of report.json.
 nlohmann::json ExportRun(const ReconstructOptions& options,
                          const ExportInput& input);
 

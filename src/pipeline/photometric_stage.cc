@@ -310,10 +310,10 @@ PhotometricResult RunPhotometricStage(
                            cam_from_world,
                            *keyframe_images,
                            options.exposure_calibration);
-    SetExposures(
-        result.exposure.exposures, options.smoothing_sigma_px, keyframe_images);
     print(ExposureLine(result.exposure));
   }
+  SetExposures(
+      result.exposure.exposures, options.smoothing_sigma_px, keyframe_images);
   const KeyframeImages& images = *keyframe_images;
   result.texels = sampled.texels.size();
   result.observation_fingerprint =

@@ -70,9 +70,10 @@ struct PhotometricResult {
 
 // `planes` are the initial planes, one a cluster. `surface`, one a cluster or
 // empty: TextureProblem::surface. `cam_from_world` are the
-// initial poses of the colour camera, one a keyframe. The exposures of
-// `keyframe_images` are set if they are calibrated. Prints the fixed-width
-// table of the phases through `print` (one line a call).
+// initial poses of the colour camera, one a keyframe. `keyframe_images` come
+// with their colours; exposures, if they are calibrated, and float images are
+// set. Prints the fixed-width table of the phases through `print` (one line a
+// call).
 PhotometricResult RunPhotometricStage(
     const TriMesh& mesh,
     const PlanarPartition& partition,

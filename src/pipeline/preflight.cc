@@ -15,9 +15,10 @@ namespace {
 
 constexpr double kMb = 1024.0 * 1024.0;
 constexpr double kBaseMb = 60;  // code, libraries, buffers
-constexpr double kBytesPerFace = 330, kBytesPerKeptFace = 70;
+constexpr double kBytesPerFace = 390, kBytesPerKeptFace = 70;
 constexpr double kColorBytes = 3, kDepthBytes = 2;  // a pixel
 constexpr double kLumaBytes = 4, kSmoothBytes = 4;  // while optimising
+constexpr double kDrawingMb = 130, kBytesPerDrawnFace = 100;
 constexpr double kSolverMb = 180;
 constexpr double kBytesPerSampledTexel = 100, kBytesPerObservation = 11;
 constexpr double kBytesPerAtlasTexel = 150;
@@ -71,6 +72,7 @@ MemoryEstimate EstimateMemory(const ReconstructOptions& options,
   MemoryEstimate estimate;
   // Images are read meanwhile.
   estimate.mesh_mb = kBaseMb + kBytesPerFace * size.faces / kMb + images_mb;
+  estimate.drawing_mb = kDrawingMb + kBytesPerDrawnFace * size.faces / kMb;
   estimate.photometric_mb =
       kept + kSolverMb + (float_bytes + coarse_bytes) * pixels / kMb +
       sampled * (kBytesPerSampledTexel + kBytesPerObservation * views) / kMb;

@@ -29,20 +29,24 @@ SceneSize MeasureScene(const ReconstructOptions& options,
 
 // Largest resident memory of each part of a run [MB of 2^20 bytes].
 struct MemoryEstimate {
-  double mesh_mb = 0;         // partition and simplification
+  double mesh_mb = 0;         // partition and simplification, images
+  double drawing_mb = 0;      // beside it: pictures of the dense mesh
   double photometric_mb = 0;  // images, texels, observations
   double export_mb = 0;       // images, final colours, previews
 
   double PeakMb() const;
+  // Whether these pictures may be drawn while the mesh is simplified.
+  bool DrawsBesideMesh() const { return mesh_mb + drawing_mb <= PeakMb(); }
 };
 
 // A model with one factor a thing, fitted to runs of two real scans:
-//   mesh         60 MB + 330 bytes a face
-//   photometric  120 MB + 70 bytes a face + 13 bytes a pixel of the keyframes
+//   mesh         60 MB + 390 bytes a face + 5 bytes a pixel of the keyframes
+//   drawing      130 MB + 100 bytes a face
+//   photometric  240 MB + 70 bytes a face + 13 bytes a pixel of the keyframes
 //                (9 without smoothing or rms_grey after every phase), more with
 //                coarser levels + 100 bytes a sampled texel + 11 bytes an
 //                observation
-//   export       60 MB + 70 bytes a face + 5 bytes a pixel + 180 bytes a texel
+//   export       60 MB + 70 bytes a face + 5 bytes a pixel + 150 bytes a texel
 //                of the atlas
 // Texels are area / texel_size^2, sampled ones 1 / stride^2 of them, each seen
 // by 15 % of the keyframes; with stride 0 the observations stay below
@@ -53,7 +57,7 @@ MemoryEstimate EstimateMemory(const ReconstructOptions& options,
 // Makes a run fit into options->max_memory_gb: without rms_grey in the trace
 // but for its first and last state, unless it fits anyway. The model does not
 // depend on it. Throws OptionsError if that is not enough. It is the estimate
-// that is held to the limit, not the run: redkitchen at 1.1 GB took 2 % more.
+// that is held to the limit, not the run.
 void FitIntoMemory(const SceneSize& size, ReconstructOptions* options);
 
 // "765221 faces, 80.2 m2, 184 keyframes of 640x480: ..." for the plan line.

@@ -7,6 +7,7 @@
 
 #include "util/atomic_file.h"
 #include "util/errors.h"
+#include "util/parallel_for.h"
 
 namespace facet {
 namespace {
@@ -17,9 +18,21 @@ void Draw(const std::string& dir,
           const TriMesh& mesh,
           const SurfaceColor& color,
           const DrawOptions& options) {
-  for (const SampledView& sampled : views) {
-    WritePng(dir + "/" + name + "_" + sampled.view.name + ".png",
-             DrawView(sampled, mesh, color, options));
+  ParallelFor(0, views.size(), [&](size_t i) {
+    WritePng(dir + "/" + name + "_" + views[i].view.name + ".png",
+             DrawView(views[i], mesh, color, options));
+  });
+}
+
+void DrawInput(const std::string& dir,
+               const std::vector<SampledView>& views,
+               const TriMesh& mesh) {
+  DrawOptions options;
+  options.smooth_normals = true;
+  Draw(dir, "input", views, mesh, UniformColor({0.78f, 0.78f, 0.8f}), options);
+  if (!mesh.vertex_colors.empty()) {
+    options.shade = false;
+    Draw(dir, "input_color", views, mesh, VertexColors(mesh), options);
   }
 }
 
@@ -60,23 +73,17 @@ std::vector<char> SeenFaces(const TriMesh& mesh,
   return seen;
 }
 
-void DrawInput(const std::string& dir,
-               const std::vector<SampledView>& views,
-               const TriMesh& mesh) {
-  DrawOptions options;
-  options.smooth_normals = true;
-  Draw(dir, "input", views, mesh, UniformColor({0.78f, 0.78f, 0.8f}), options);
-  if (!mesh.vertex_colors.empty()) {
-    options.shade = false;
-    Draw(dir, "input_color", views, mesh, VertexColors(mesh), options);
-  }
-}
-
-void DrawPlanes(const std::string& dir,
-                const std::vector<SampledView>& views,
-                const TriMesh& mesh,
-                const std::vector<int>& face_plane) {
-  Draw(dir, "planes", views, mesh, PlaneColors(face_plane), DrawOptions());
+std::vector<PreviewView> DrawDense(const std::string& dir,
+                                   const TriMesh& mesh,
+                                   const std::vector<int>& face_plane,
+                                   const std::vector<Pose>& cam_from_world) {
+  const RayScene scene(mesh);
+  const std::vector<PreviewView> views =
+      ChooseViews(scene, mesh, cam_from_world);
+  const std::vector<SampledView> sampled = SampleViews(scene, mesh, views);
+  DrawInput(dir, sampled, mesh);
+  Draw(dir, "planes", sampled, mesh, PlaneColors(face_plane), DrawOptions());
+  return views;
 }
 
 void DrawWireframe(const std::string& dir,

@@ -27,19 +27,17 @@ std::vector<SampledView> SampleViews(const RayScene& scene,
 std::vector<char> SeenFaces(const TriMesh& mesh,
                             const std::vector<SampledView>& views);
 
-// input_<view>.png (shaded) and, when the mesh has colours,
-// input_color_<view>.png. Here and below `mesh` is the one that was sampled.
-void DrawInput(const std::string& dir,
-               const std::vector<SampledView>& views,
-               const TriMesh& mesh);
+// The pictures of the dense mesh, from views around the poses of the colour
+// camera: input_<view>.png (shaded), input_color_<view>.png when the mesh has
+// colours, planes_<view>.png with its clusters in their colours. Returns the
+// views.
+std::vector<PreviewView> DrawDense(const std::string& dir,
+                                   const TriMesh& mesh,
+                                   const std::vector<int>& face_plane,
+                                   const std::vector<Pose>& cam_from_world);
 
-// planes_<view>.png: clusters of the dense mesh in their colours.
-void DrawPlanes(const std::string& dir,
-                const std::vector<SampledView>& views,
-                const TriMesh& mesh,
-                const std::vector<int>& face_plane);
-
-// wireframe_<view>.png: the light mesh, plane colours, triangle edges.
+// wireframe_<view>.png: the light mesh, plane colours, triangle edges. Here and
+// below `mesh` is the one that was sampled.
 void DrawWireframe(const std::string& dir,
                    const std::vector<SampledView>& views,
                    const TriMesh& mesh,

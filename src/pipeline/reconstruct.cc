@@ -10,11 +10,11 @@
 #include "mesh/mesh_io.h"
 #include "pipeline/artefacts.h"
 #include "pipeline/export_stage.h"
+#include "pipeline/meanwhile.h"
 #include "pipeline/preflight.h"
 #include "pipeline/report.h"
 #include "pipeline/stage_clock.h"
 #include "util/atomic_file.h"
-#include "util/background.h"
 #include "util/errors.h"
 #include "util/parallel_for.h"
 #include "util/resources.h"
@@ -42,8 +42,15 @@ class Run {
     CheckFolder();
     CheckOptions(options_);
     sequence_ = OpenSequence(options_.sequence_path, options_.sequence);
-    ReadImagesMeanwhile();
+    meanwhile_ = std::make_unique<Meanwhile>(options_, *sequence_);
+    const bool reads =
+        !FromFile(Stage::kKeyframes) && Wanted(Stage::kKeyframes);
+    if (reads) meanwhile_->ReadImages();
     RunPartition();
+    if (reads && draw_early_) {
+      meanwhile_->DrawDense(
+          dense_, sequence_->ColorPoses(meanwhile_->Keyframes().keyframes));
+    }
     if (Wanted(Stage::kSimplify)) RunSimplify();
     if (Wanted(Stage::kKeyframes)) RunKeyframes();
     if (Wanted(Stage::kPhotometric)) RunPhotometric();
@@ -68,16 +75,6 @@ class Run {
                          " is not empty: give another folder, --overwrite, or "
                          "go on in it with --from_stage");
     }
-  }
-
-  // The mesh stages run on one thread for long: images are decoded on others.
-  void ReadImagesMeanwhile() {
-    if (FromFile(Stage::kKeyframes) || !Wanted(Stage::kKeyframes)) return;
-    reading_images_ = std::make_unique<Background>([this] {
-      choice_ = ChooseKeyframes(*sequence_, options_.keyframes);
-      if (!Wanted(Stage::kPhotometric)) return;
-      images_ = LoadKeyframeColors(*sequence_, choice_.keyframes);
-    });
   }
 
   StageClock Begin(const char* stage) {
@@ -115,6 +112,7 @@ class Run {
     const SceneSize size = MeasureScene(options_, dense_.mesh, *sequence_);
     FitIntoMemory(size, &options_);
     const MemoryEstimate estimate = EstimateMemory(options_, size);
+    draw_early_ = estimate.DrawsBesideMesh();
     const double available = AvailableMemoryMb();
     PrintLine("plan          " + DescribePlan(size, estimate, available));
     report_["memory"] = {{"estimate_mb", estimate.PeakMb()},
@@ -215,10 +213,10 @@ class Run {
     }
     BeginWriting();
     WarnOfConventions(*sequence_, dense_.mesh, options_.visibility);
-    reading_images_->Finish();
-    CheckKeyframes(*sequence_, choice_);
-    keyframes_.keyframes = choice_.keyframes;
-    keyframes_.blur = choice_.blur;
+    const KeyframeChoice& choice = meanwhile_->Keyframes();
+    CheckKeyframes(*sequence_, choice);
+    keyframes_.keyframes = choice.keyframes;
+    keyframes_.blur = choice.blur;
     keyframes_.report =
         KeyframeReport(*sequence_, keyframes_.keyframes, options_.keyframes);
     keyframes_.warnings = StageWarnings();
@@ -233,9 +231,8 @@ class Run {
   // What several later stages need: poses, images, atlas.
   void LoadForTexture() {
     if (!initial_poses_.empty()) return;
-    for (const int k : keyframes_.keyframes) {
-      initial_poses_.push_back(sequence_->color_cam_from_world(k));
-    }
+    initial_poses_ = sequence_->ColorPoses(keyframes_.keyframes);
+    images_ = meanwhile_->TakeColors();
     if (images_.size() == 0) {
       images_ = LoadKeyframeColors(*sequence_, keyframes_.keyframes);
     }
@@ -250,14 +247,6 @@ class Run {
     }
   }
 
-  std::vector<int> KeyframeNumbers() const {
-    std::vector<int> numbers;
-    for (const int k : keyframes_.keyframes) {
-      numbers.push_back(sequence_->frames()[k].number);
-    }
-    return numbers;
-  }
-
   void RunPhotometric() {
     StageClock clock = Begin("photometric");
     if (FromFile(Stage::kPhotometric)) {
@@ -268,7 +257,6 @@ class Run {
     }
     BeginWriting();
     LoadForTexture();
-    SetExposures({}, options_.photometric.smoothing_sigma_px, &images_);
     std::vector<SurfaceMoments> surface;
     if (options_.plane_init == PlaneInit::kDense) {
       surface = ClusterMoments(dense_.mesh,
@@ -290,7 +278,7 @@ class Run {
     WriteFileAtomically(options_.output_path + "/trace.csv",
                         TraceCsv(result.trace));
     SaveTraceStates(options_,
-                    KeyframeNumbers(),
+                    sequence_->Numbers(keyframes_.keyframes),
                     {initial_poses_, initial_planes_},
                     result.trace);
     photometric_.cam_from_world = result.cam_from_world;
@@ -346,6 +334,9 @@ class Run {
     images_.exposures = photometric_.exposures;
     images_.smooth.clear();
     ReturnFreedMemory();
+    meanwhile_->DrawDense(dense_, initial_poses_);
+    const std::vector<PreviewView> views = meanwhile_->Views();
+    ReturnFreedMemory();
     const ExportInput input = {*sequence_,
                                dense_,
                                simplified_,
@@ -355,7 +346,8 @@ class Run {
                                photometric_,
                                geometry_.mesh,
                                atlas_,
-                               images_};
+                               images_,
+                               views};
     export_report_ = ExportRun(options_, input);
     stages_.push_back(clock.Finish("run folder " + options_.output_path));
   }
@@ -397,8 +389,8 @@ class Run {
   std::vector<Plane> initial_planes_;
   KeyframeImages images_;
   Atlas atlas_;
-  KeyframeChoice choice_;
-  std::unique_ptr<Background> reading_images_;  // into images_ and choice_
+  bool draw_early_ = false;  // the dense mesh, while it is simplified
+  std::unique_ptr<Meanwhile> meanwhile_;  // reads options_, sequence_, dense_
   bool writing_ = false;
   ptrdiff_t warnings_before_ = 0;
   json stages_ = json::array(), export_report_, report_ = json::object();

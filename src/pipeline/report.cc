@@ -54,13 +54,11 @@ json KeyframeReport(const RgbdSequence& sequence,
     usable += frame.usable ? 1 : 0;
     held_out += frame.usable && IsHeldOut(frame.number, options) ? 1 : 0;
   }
-  std::vector<int> numbers;
-  for (const int k : keyframes) numbers.push_back(sequence.frames()[k].number);
   return {{"frames", sequence.frames().size()},
           {"usable", usable},
           {"held_out", held_out},
           {"keyframes", keyframes.size()},
-          {"numbers", numbers}};
+          {"numbers", sequence.Numbers(keyframes)}};
 }
 
 namespace {

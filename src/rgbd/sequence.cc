@@ -13,6 +13,20 @@ cv::Mat RgbdSequence::LoadLuma(int frame_idx) const {
   return LumaFromRgb(LoadColor(frame_idx));
 }
 
+std::vector<Pose> RgbdSequence::ColorPoses(
+    const std::vector<int>& frame_idx) const {
+  std::vector<Pose> poses;
+  for (const int i : frame_idx) poses.push_back(color_cam_from_world(i));
+  return poses;
+}
+
+std::vector<int> RgbdSequence::Numbers(
+    const std::vector<int>& frame_idx) const {
+  std::vector<int> numbers;
+  for (const int i : frame_idx) numbers.push_back(frames_[i].number);
+  return numbers;
+}
+
 Pose RgbdSequence::PoseFileFromColorCam(
     const Pose& color_cam_from_world) const {
   if (options_.pose_camera == PoseCamera::kColor) {

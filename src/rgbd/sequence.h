@@ -54,6 +54,9 @@ class RgbdSequence {
     return calibration_.color_from_depth *
            frames_[frame_idx].depth_cam_from_world;
   }
+  // Of several frames: color_cam_from_world, and their numbers.
+  std::vector<Pose> ColorPoses(const std::vector<int>& frame_idx) const;
+  std::vector<int> Numbers(const std::vector<int>& frame_idx) const;
   // Back to the camera of the pose files: world_from_<pose camera>.
   Pose PoseFileFromColorCam(const Pose& color_cam_from_world) const;
   // And its inverse: color_cam_from_world of a pose in a pose file.

@@ -12,15 +12,6 @@ double Distance(const Pose& a, const Pose& b) {
   return (a.Matrix() - b.Matrix()).norm();
 }
 
-std::vector<Pose> ColorPoses(const RgbdSequence& sequence,
-                             const std::vector<int>& keyframes) {
-  std::vector<Pose> poses;
-  for (const int k : keyframes) {
-    poses.push_back(sequence.color_cam_from_world(k));
-  }
-  return poses;
-}
-
 // Whatever camera the pose files belong to: without a change the poses come
 // back as they were, of keyframes and of others. Breaks if poses.txt holds the
 // colour camera while the files hold the depth camera.
@@ -32,7 +23,7 @@ TEST(RunPoses, UnchangedPosesComeBack) {
     const auto sequence = OpenSequence(scan.path(), options);
     const std::vector<int> keyframes = {1, 3};
     const std::vector<NumberedPose> poses =
-        RunPoses(*sequence, keyframes, ColorPoses(*sequence, keyframes));
+        RunPoses(*sequence, keyframes, sequence->ColorPoses(keyframes));
     ASSERT_EQ(poses.size(), 5u);
     for (const NumberedPose& p : poses) {
       EXPECT_LT(
@@ -50,7 +41,7 @@ TEST(RunPoses, CommonMotionMovesAllFrames) {
   const TinySequence scan({0, 1, 4, 5, 9});
   const auto sequence = OpenSequence(scan.path(), {});
   const std::vector<int> keyframes = {1, 3};
-  std::vector<Pose> moved = ColorPoses(*sequence, keyframes);
+  std::vector<Pose> moved = sequence->ColorPoses(keyframes);
   const Pose camera_motion =
       ExpSe3((Vector6d() << 0.02, -0.01, 0.03, 0.04, 0.01, -0.02).finished());
   for (Pose& pose : moved) pose = camera_motion * pose;
@@ -70,7 +61,7 @@ TEST(RunPoses, LostFramesAreLeftOut) {
              "-inf -inf -inf -inf\n-inf -inf -inf -inf\n");
   const auto sequence = OpenSequence(scan.path(), {});
   const std::vector<int> keyframes = {2, 4};
-  std::vector<Pose> moved = ColorPoses(*sequence, keyframes);
+  std::vector<Pose> moved = sequence->ColorPoses(keyframes);
   moved[0].translation.x() += 0.1;
   const std::vector<NumberedPose> poses = RunPoses(*sequence, keyframes, moved);
   ASSERT_EQ(poses.size(), 5u);
