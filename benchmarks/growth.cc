@@ -1,0 +1,163 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+//
+// How CPU time and memory grow with the scan.
+//
+//   bench-growth observations   of E_c, on 60 keyframes
+//   bench-growth keyframes      at 4 million observations, the default
+//   bench-growth MESH.ply ...   faces: the mesh stages on each
+//   bench-growth small          a smoke test
+//
+// A line a measurement on stdout, and as comments the exponents b of
+// time = a size^b, fitted to the logarithms over all sizes of a series.
+#include <malloc.h>
+
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "benchmarks/bench_args.h"
+#include "benchmarks/bench_scene.h"
+#include "mesh/clean.h"
+#include "mesh/merge.h"
+#include "mesh/mesh_io.h"
+#include "mesh/partition.h"
+#include "mesh/simplify.h"
+#include "problems/solve_blocks.h"
+
+namespace facet {
+namespace {
+
+struct Point {
+  double size, cpu_s;
+};
+
+class GrowthTable {
+ public:
+  explicit GrowthTable(const char* axis) : axis_(axis) {}
+
+  // Runs `work` once.
+  template <typename Work>
+  void Measure(double size, const char* what, const Work& work) {
+    malloc_trim(0);
+    ResetPeakRss();
+    const Stopwatch watch;
+    work();
+    const double cpu_s = watch.CpuSecondsSince();
+    std::printf("%s,%.0f,%s,%.2f,%.2f,%.0f\n",
+                axis_,
+                size,
+                what,
+                cpu_s,
+                watch.WallSeconds(),
+                PeakRssMb());
+    std::fflush(stdout);
+    series_[what].push_back({size, cpu_s});
+  }
+
+  void PrintExponents() const {
+    for (const auto& [what, points] : series_) {
+      if (points.size() < 2) continue;
+      double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+      for (const Point& point : points) {
+        const double a = std::log(point.size), b = std::log(point.cpu_s);
+        n += 1, x += a, y += b, xx += a * a, xy += a * b;
+      }
+      std::printf("# %s: time ~ %s^%.2f\n",
+                  what.c_str(),
+                  axis_,
+                  (n * xy - x * y) / (n * xx - x * x));
+    }
+  }
+
+ private:
+  const char* axis_;
+  std::map<std::string, std::vector<Point>> series_;
+};
+
+void PrintHeader() { std::printf("axis,size,what,cpu_s,wall_s,peak_mb\n"); }
+
+void MeasurePhases(double size,
+                   const BenchSize& scene_size,
+                   GrowthTable* table) {
+  const BenchScene bench = MakeBenchScene(scene_size);
+  const TextureProblem& problem = bench.scene.problem;
+  SolverConfig config;
+  config.trace_rms_grey = false;
+  const EnergyTerms before =
+      EvaluateEnergy(problem, bench.weights, bench.start);
+  const auto solve = [&](unsigned blocks) {
+    ReconState state = bench.start;
+    SolverMemory memory;
+    SolveBlocks(
+        problem, bench.weights, blocks, config, before, &memory, &state);
+  };
+  table->Measure(size, "C", [&] { solve(kColors); });
+  table->Measure(size, "Phi", [&] { solve(kPlanes); });
+  table->Measure(size, "T+F", [&] { solve(kPoses | unsigned{kWarps}); });
+  table->Measure(
+      size, "C+Phi+T", [&] { solve(kColors | kPoses | unsigned{kPlanes}); });
+}
+
+void GrowObservations(const std::vector<size_t>& sizes) {
+  PrintHeader();
+  GrowthTable table("observations");
+  for (const size_t n : sizes) {
+    MeasurePhases(static_cast<double>(n), {n, 60, 320, 240}, &table);
+  }
+  table.PrintExponents();
+}
+
+void GrowKeyframes(const std::vector<int>& sizes, size_t observations) {
+  PrintHeader();
+  GrowthTable table("keyframes");
+  for (const int n : sizes) {
+    MeasurePhases(n, {observations, n, 320, 240}, &table);
+  }
+  table.PrintExponents();
+}
+
+void GrowFaces(const std::vector<std::string>& paths) {
+  PrintHeader();
+  GrowthTable table("faces");
+  for (const std::string& path : paths) {
+    TriMesh mesh = ReadMesh(path).mesh;
+    CleanMesh({}, &mesh);
+    SplitNonManifold(&mesh);
+    const auto size = static_cast<double>(mesh.NumFaces());
+    PlanarPartition planes;
+    table.Measure(size, "partition", [&] { planes = PartitionMesh(mesh, {}); });
+    table.Measure(
+        size, "merge", [&] { planes = MergePlanes(mesh, planes, {}); });
+    table.Measure(
+        size, "simplify", [&] { SimplifyByPlanes(mesh, planes, {}); });
+  }
+  table.PrintExponents();
+}
+
+}  // namespace
+}  // namespace facet
+
+int main(int argc, char** argv) {
+  using namespace facet;
+  google::InitGoogleLogging(argv[0]);
+  FLAGS_minloglevel = google::ERROR;
+  const std::string first = argc > 1 ? argv[1] : "";
+  if (first == "small") {
+    GrowKeyframes({4, 6}, 20000);
+  } else if (first == "observations") {
+    GrowObservations(
+        {1000000, 3000000, 10000000, 30000000, 100000000, 300000000});
+  } else if (first == "keyframes") {
+    GrowKeyframes({50, 100, 200, 400, 900}, 4000000);
+  } else if (argc > 1) {
+    GrowFaces({argv + 1, argv + argc});
+  } else {
+    std::fprintf(stderr,
+                 "usage: %s observations | keyframes | small | MESH.ply ...\n",
+                 argv[0]);
+    return 2;
+  }
+}
