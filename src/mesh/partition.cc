@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "mesh/greedy_merge.h"
 #include "mesh/partition_steps.h"
+#include "mesh/union_find.h"
 #include "util/errors.h"
 #include "util/warnings.h"
 
@@ -85,27 +87,25 @@ void MergeAgain(const TriMesh& mesh,
   for (int& l : *label) l = merged[l];
 }
 
-int CountComponents(const FaceNeighbors& neighbors, size_t num_faces) {
-  std::vector<char> seen(num_faces, 0);
-  std::vector<int> stack;
-  int components = 0;
-  for (size_t seed = 0; seed < num_faces; ++seed) {
-    if (seen[seed]) continue;
-    ++components;
-    seen[seed] = 1;
-    stack.push_back(static_cast<int>(seed));
-    while (!stack.empty()) {
-      const int f = stack.back();
-      stack.pop_back();
-      for (int i = neighbors.begin[f]; i < neighbors.begin[f + 1]; ++i) {
-        const int g = neighbors.neighbors[i];
-        if (seen[g]) continue;
-        seen[g] = 1;
-        stack.push_back(g);
-      }
-    }
+int CountComponents(const std::vector<std::pair<int, int>>& face_pairs,
+                    size_t num_faces) {
+  UnionFind sets(num_faces);
+  size_t components = num_faces;
+  for (const auto& [f, g] : face_pairs) {
+    const int a = sets.Find(f), b = sets.Find(g);
+    if (a == b) continue;
+    sets.Unite(a, b);
+    --components;
   }
-  return components;
+  return static_cast<int>(components);
+}
+
+// Every piece is a cluster at least. Where pieces are many, as specks of a
+// fused scan can be, they must not use up the clusters of the others.
+PartitionOptions MakeRoomForPieces(PartitionOptions options, int components) {
+  options.target_clusters = std::max(options.target_clusters,
+                                     components + options.target_clusters / 2);
+  return options;
 }
 
 std::vector<SurfaceMoments> AllFaceMoments(const TriMesh& mesh) {
@@ -130,21 +130,23 @@ std::vector<SurfaceMoments> ClusterMoments(const TriMesh& mesh,
 }
 
 PlanarPartition PartitionMesh(const TriMesh& mesh,
-                              const PartitionOptions& options,
+                              const PartitionOptions& asked,
                               PartitionReport* report) {
-  CheckOptions(options);
+  CheckOptions(asked);
   PartitionReport unused;
   if (!report) report = &unused;
   *report = PartitionReport();
 
   PlanarPartition partition;
   std::vector<int>& label = partition.face_cluster;
+  std::vector<std::pair<int, int>> pairs = FacePairs(mesh);
+  report->components = CountComponents(pairs, mesh.NumFaces());
+  const PartitionOptions options = MakeRoomForPieces(asked, report->components);
   label = MergeGreedily(
-      Limits(options), options.energy, AllFaceMoments(mesh), FacePairs(mesh));
+      Limits(options), options.energy, AllFaceMoments(mesh), std::move(pairs));
   report->greedy_clusters = NumLabels(label);
 
   const FaceNeighbors neighbors = BuildFaceNeighbors(mesh);
-  report->components = CountComponents(neighbors, mesh.NumFaces());
   SwapBorders(mesh, neighbors, options, &label, report);
   int count = ConnectClusters(
       mesh, neighbors, report->greedy_clusters, &label, &report->loose_pieces);
@@ -154,16 +156,17 @@ PlanarPartition PartitionMesh(const TriMesh& mesh,
   CompactLabels(count, &label);
   RefitClusters(mesh, &partition);
   report->rms_m = PartitionRms(mesh, partition);
-  if (static_cast<size_t>(options.target_clusters) > mesh.NumFaces()) {
+  if (static_cast<size_t>(asked.target_clusters) > mesh.NumFaces()) {
     AddWarning("partition: the mesh has only " +
                std::to_string(mesh.NumFaces()) + " faces, fewer than the " +
-               std::to_string(options.target_clusters) +
+               std::to_string(asked.target_clusters) +
                " clusters asked for: every face starts as a plane");
   }
-  if (report->components > options.target_clusters) {
+  if (options.target_clusters > asked.target_clusters) {
     AddWarning("partition: the mesh has " + std::to_string(report->components) +
-               " separate pieces, more than the " +
-               std::to_string(options.target_clusters) + " clusters asked for");
+               " separate pieces, so it is divided into " +
+               std::to_string(options.target_clusters) +
+               " clusters instead of " + std::to_string(asked.target_clusters));
   }
   return partition;
 }

@@ -48,10 +48,11 @@ struct PartitionReport {
 
 // The mesh must be clean (mesh/clean.h); non-manifold edges are allowed: all
 // their faces are neighbours. Clusters come in the order of their first faces.
-// Stops at the number of connected components if that is more than the target
-// (warning). Of a mesh with fewer faces than the target every face becomes a
-// cluster (warning). Throws OptionsError for senseless options. Deterministic,
-// one thread; about 160 bytes a face beside the mesh.
+// With more pieces (connected components) than half of the target, there are as
+// many clusters as pieces and half of the target (warning). Of a mesh with
+// fewer faces than the target every face becomes a cluster (warning). Throws
+// OptionsError for senseless options. Deterministic, one thread; about 160
+// bytes a face beside the mesh.
 PlanarPartition PartitionMesh(const TriMesh& mesh,
                               const PartitionOptions& options,
                               PartitionReport* report = nullptr);
