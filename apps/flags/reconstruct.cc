@@ -97,6 +97,11 @@ DEFINE_int32(simplify_faces,
 DEFINE_double(simplify_faces_per_m2,
               SimplifyOptions().faces_per_m2,
               "face budget by surface");
+DEFINE_double(
+    simplify_sweep_ratio,
+    SimplifyOptions().sweep_ratio,
+    "budget: larger meshes are swept down to this many times the "
+    "budget, which is faster, before collapses go by cost; 0 = never");
 DEFINE_double(simplify_plane_share,
               SimplifyOptions().cluster_plane_share,
               "1 draws vertices into the planes, 0 to the dense surface");
@@ -231,6 +236,7 @@ void CheckNumbers() {
       {"simplify_border_ratio", 0, 1, true},
       {"simplify_passes", 1, 100},
       {"simplify_plane_share", 0, 1},
+      {"simplify_sweep_ratio", 0},
       {"texel_size", 0.0001, 0.1},
       {"atlas_page_size", 64, 32768},
       {"texel_stride", 0, 1000},
@@ -283,6 +289,7 @@ void MeshOptions(ReconstructOptions* o) {
   o->simplify.target_faces = FLAGS_simplify_faces;
   o->simplify.faces_per_m2 = FLAGS_simplify_faces_per_m2;
   o->simplify.cluster_plane_share = FLAGS_simplify_plane_share;
+  o->simplify.sweep_ratio = FLAGS_simplify_sweep_ratio;
   o->simplify.inner_target = FLAGS_simplify_inner_target;
   o->simplify.border_ratio = FLAGS_simplify_border_ratio;
   o->simplify.passes = FLAGS_simplify_passes;

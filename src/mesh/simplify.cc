@@ -25,6 +25,8 @@ void CheckOptions(const SimplifyOptions& o) {
   require(o.target_faces >= 0, "target_faces must not be negative");
   require(o.target_faces > 0 || o.faces_per_m2 > 0,
           "faces_per_m2 must be positive");
+  require(o.sweep_ratio == 0 || o.sweep_ratio >= 1,
+          "sweep_ratio must be 0 or at least 1");
   require(o.max_cost_m4 > 0, "max_cost_m4 must be positive");
   require(o.free_error_m >= 0 && o.max_error_m > 0,
           "error bounds must be positive");

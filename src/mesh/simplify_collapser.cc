@@ -13,8 +13,9 @@ namespace facet {
 EdgeClass Collapser::Impl::ClassOf(EdgeHandle e) const {
   if (border[e.idx()]) return kBorder;
   const HalfedgeHandle h = kernel.halfedge_handle(e, 0);
-  const int ends = (border_degree[kernel.from_vertex_handle(h).idx()] > 0) +
-                   (border_degree[kernel.to_vertex_handle(h).idx()] > 0);
+  const int ends =
+      (vertices[kernel.from_vertex_handle(h).idx()].border_degree > 0) +
+      (vertices[kernel.to_vertex_handle(h).idx()].border_degree > 0);
   if (ends == 2 || (ends == 1 && !options.collapse_to_border)) return kChord;
   return kInner;
 }
@@ -41,16 +42,17 @@ Collapse Collapser::Impl::Plan(EdgeHandle e, int target) const {
   const auto fixed = [&](int v) {
     return border[e.idx()] ? options.keep_mesh_boundary &&
                                  kernel.is_boundary(VertexHandle(v))
-                           : border_degree[v] > 0;
+                           : vertices[v].border_degree > 0;
   };
-  if (fixed(from) || (!fixed(to) && border_degree[from] > border_degree[to])) {
+  if (fixed(from) || (!fixed(to) && vertices[from].border_degree >
+                                        vertices[to].border_degree)) {
     std::swap(from, to);
     plan.halfedge = kernel.opposite_halfedge_handle(plan.halfedge);
   }
   plan.fixed_target = fixed(to);
   const Quadric q = quadric[from] + quadric[to];
-  const Eigen::Vector3d& a = position[from];
-  const Eigen::Vector3d& b = position[to];
+  const Eigen::Vector3d& a = vertices[from].position;
+  const Eigen::Vector3d& b = vertices[to].position;
   plan.target = b;
   if (!plan.fixed_target) {
     Eigen::Vector3d best;
@@ -68,16 +70,9 @@ Collapse Collapser::Impl::Plan(EdgeHandle e, int target) const {
   return plan;
 }
 
-// Link condition on the mesh (OpenMesh) and on the labels.
+// Link condition on the labels and on the mesh (OpenMesh): the cheaper first.
 bool Collapser::Impl::LinkAllows(const Collapse& collapse) const {
   const HalfedgeHandle h = collapse.halfedge;
-  // is_collapse_ok only tags status bits of the one-rings: logically const.
-  if (!const_cast<Kernel&>(kernel).is_collapse_ok(h)) return false;
-  const VertexHandle from = kernel.from_vertex_handle(h);
-  const VertexHandle to = kernel.to_vertex_handle(h);
-  // A closed tetrahedron passes the test of the one-rings.
-  if (kernel.valence(from) == 3 && kernel.valence(to) == 3) return false;
-
   int lost_cluster = -1;
   for (const HalfedgeHandle side : {h, kernel.opposite_halfedge_handle(h)}) {
     if (kernel.is_boundary(side)) continue;
@@ -91,29 +86,35 @@ bool Collapser::Impl::LinkAllows(const Collapse& collapse) const {
         kernel.edge_handle(kernel.prev_halfedge_handle(side));
     if (border[next.idx()] && border[prev.idx()]) return false;
   }
-  return true;
+  // is_collapse_ok only tags status bits of the one-rings: logically const.
+  if (!const_cast<Kernel&>(kernel).is_collapse_ok(h)) return false;
+  // A closed tetrahedron passes the test of the one-rings.
+  return kernel.valence(kernel.from_vertex_handle(h)) != 3 ||
+         kernel.valence(kernel.to_vertex_handle(h)) != 3;
 }
 
 bool Collapser::Impl::ShapeAllows(const Collapse& collapse,
                                   const ShapeLimits& limits) const {
   const VertexHandle from = kernel.from_vertex_handle(collapse.halfedge);
   const VertexHandle to = kernel.to_vertex_handle(collapse.halfedge);
-  const Eigen::Vector3d kept = facing[from.idx()] + facing[to.idx()];
+  const Eigen::Vector3d kept =
+      vertices[from.idx()].facing + vertices[to.idx()].facing;
   for (const VertexHandle moved : {from, to}) {
     const VertexHandle other = moved == from ? to : from;
-    if (moved == to && collapse.target == position[to.idx()]) continue;
+    if (moved == to && collapse.target == vertices[to.idx()].position) continue;
     for (auto it = kernel.cvoh_iter(moved); it.is_valid(); ++it) {
       if (kernel.is_boundary(*it)) continue;
       const VertexHandle v2 = kernel.to_vertex_handle(*it);
       const VertexHandle v3 =
           kernel.to_vertex_handle(kernel.next_halfedge_handle(*it));
       if (v2 == other || v3 == other) continue;
-      if (!MayMoveCorner(position[moved.idx()],
-                         collapse.target,
-                         position[v2.idx()],
-                         position[v3.idx()],
-                         kept + facing[v2.idx()] + facing[v3.idx()],
-                         limits)) {
+      if (!MayMoveCorner(
+              vertices[moved.idx()].position,
+              collapse.target,
+              vertices[v2.idx()].position,
+              vertices[v3.idx()].position,
+              kept + vertices[v2.idx()].facing + vertices[v3.idx()].facing,
+              limits)) {
         return false;
       }
     }
@@ -124,7 +125,8 @@ bool Collapser::Impl::ShapeAllows(const Collapse& collapse,
 double Collapser::Impl::ErrorOf(const Collapse& collapse) const {
   const int from = kernel.from_vertex_handle(collapse.halfedge).idx();
   const int to = kernel.to_vertex_handle(collapse.halfedge).idx();
-  return std::sqrt(collapse.cost / (weight[from] + weight[to]));
+  return std::sqrt(collapse.cost /
+                   (vertices[from].weight + vertices[to].weight));
 }
 
 // Adds `sign` to the counts of edges at both ends of h.
@@ -169,19 +171,18 @@ void Collapser::Impl::Execute(const Collapse& collapse) {
         kernel.edge_handle(kernel.find_halfedge(to, merged[i].first));
     border[e.idx()] = merged[i].second;
   }
-  position[to.idx()] = collapse.target;
+  vertices[to.idx()].position = collapse.target;
   quadric[to.idx()] += quadric[from.idx()];
-  weight[to.idx()] += weight[from.idx()];
-  facing[to.idx()] += facing[from.idx()];
+  vertices[to.idx()].weight += vertices[from.idx()].weight;
+  vertices[to.idx()].facing += vertices[from.idx()].facing;
   int degree = 0;
   for (const EdgeHandle e : kernel.ve_range(to)) degree += border[e.idx()];
-  border_degree[to.idx()] = degree;
+  vertices[to.idx()].border_degree = degree;
   for (const EdgeHandle e : kernel.ve_range(to)) {
     const EdgeClass edge_class = ClassOf(e);
     if (edge_class == kBorder) ++num_border;
     if (edge_class == kInner) ++cluster_inner[ClusterOf(e)];
   }
-  Requeue(to);
 }
 
 void Collapser::Impl::Push(EdgeHandle e) {
@@ -235,6 +236,7 @@ void Collapser::Impl::Run(const Wanted& wanted, const Done& done) {
     } else if (ShapeAllows(plan, soft ? soft_limits : hard_limits)) {
       queue.Remove(e.idx());
       Execute(plan);
+      Requeue(kernel.to_vertex_handle(plan.halfedge));
     } else {
       Retry(e, plan.fixed_target);
     }
@@ -258,6 +260,47 @@ void Collapser::Impl::Retry(EdgeHandle e, bool fixed_target) {
   queue.Set(
       e.idx(),
       (soft ? 1 : options.shape_penalty) * Plan(e, next % kNumTargets).cost);
+}
+
+// The cost that the given share of the candidates does not exceed, by a sample
+// of them.
+double Collapser::Impl::CostQuantile(double share) const {
+  constexpr size_t kEvery = 61;  // of the edges
+  std::vector<double> costs;
+  for (size_t e = 0; e < kernel.n_edges(); e += kEvery) {
+    const EdgeHandle edge(static_cast<int>(e));
+    if (kernel.status(edge).deleted() || !MayCollapse(edge)) continue;
+    costs.push_back(Plan(edge, 0).cost);
+  }
+  if (costs.empty()) return 0;
+  const auto place =
+      costs.begin() + static_cast<ptrdiff_t>(share * (costs.size() - 1));
+  std::nth_element(costs.begin(), place, costs.end());
+  return *place;
+}
+
+// Collapses, in the order of the edges, what is among the cheapest half, at
+// most one edge of a vertex, until `goal` faces are left. Returns whether that
+// took a tenth of the faces away.
+bool Collapser::Impl::Sweep(double goal, double max_cost) {
+  const double limit = std::min(CostQuantile(0.5), max_cost);
+  const int before = num_faces;
+  std::vector<uint8_t> touched(vertices.size(), 0);
+  for (const EdgeHandle e : kernel.edges()) {  // skips deleted edges
+    if (num_faces <= goal) break;
+    if (!MayCollapse(e)) continue;
+    const HalfedgeHandle h = kernel.halfedge_handle(e, 0);
+    uint8_t& from = touched[kernel.from_vertex_handle(h).idx()];
+    uint8_t& to = touched[kernel.to_vertex_handle(h).idx()];
+    if (from || to) continue;
+    const Collapse plan = Plan(e, 0);
+    if (plan.cost <= limit && ErrorOf(plan) <= options.max_error_m &&
+        LinkAllows(plan) && ShapeAllows(plan, soft_limits)) {
+      Execute(plan);
+      from = to = 1;
+    }
+  }
+  return num_faces < 0.9 * before;
 }
 
 Collapser::Collapser(const TriMesh& mesh,
@@ -292,6 +335,10 @@ void Collapser::RunBudget() {
       by_area ? m.options.faces_per_m2 * m.total_area : m.options.target_faces;
   const double max_cost =
       by_area ? m.options.max_cost_m4 : std::numeric_limits<double>::max();
+  m.active = kInner | kBorder;
+  const double few = m.options.sweep_ratio * budget;
+  while (few > 0 && m.num_faces > few && m.Sweep(few, max_cost)) {
+  }
   m.Fill(kInner | kBorder);
   m.Run(
       [&m, budget, max_cost](EdgeHandle, const Collapse& plan) {

@@ -17,10 +17,10 @@ void Collapser::Impl::BuildKernel(const TriMesh& mesh) {
   center /= static_cast<double>(std::max<size_t>(1, mesh.NumVertices()));
   kernel.reserve(
       mesh.NumVertices(), 3 * mesh.NumFaces() / 2 + 1000, mesh.NumFaces());
-  position.reserve(mesh.NumVertices());
-  for (const auto& v : mesh.vertices) {
+  vertices.resize(mesh.NumVertices());
+  for (size_t v = 0; v < mesh.NumVertices(); ++v) {
     kernel.new_vertex();
-    position.push_back(v - center);
+    vertices[v].position = mesh.vertices[v] - center;
   }
   for (size_t f = 0; f < mesh.NumFaces(); ++f) {
     const auto& face = mesh.faces[f];
@@ -42,7 +42,6 @@ void Collapser::Impl::BuildKernel(const TriMesh& mesh) {
 void Collapser::Impl::MarkBorders() {
   border.assign(kernel.n_edges(), 0);
   rejected.assign(kernel.n_edges(), 0);
-  border_degree.assign(kernel.n_vertices(), 0);
   attempt.assign(kernel.n_edges(), 0);
   for (const EdgeHandle e : kernel.edges()) {
     const HalfedgeHandle h = kernel.halfedge_handle(e, 0);
@@ -54,8 +53,8 @@ void Collapser::Impl::MarkBorders() {
     }
     border[e.idx()] = 1;
     ++num_border;
-    ++border_degree[kernel.from_vertex_handle(h).idx()];
-    ++border_degree[kernel.to_vertex_handle(h).idx()];
+    ++vertices[kernel.from_vertex_handle(h).idx()].border_degree;
+    ++vertices[kernel.to_vertex_handle(h).idx()].border_degree;
   }
   cluster_inner.assign(partition.clusters.size(), 0);
   for (const EdgeHandle e : kernel.edges()) {
@@ -67,12 +66,10 @@ void Collapser::Impl::BuildQuadrics(const TriMesh& mesh) {
   const double point_weight =
       options.point_share * total_area / std::max(1, num_faces);
   const double share = options.cluster_plane_share;
-  quadric.reserve(position.size());
-  for (const auto& p : position) {
-    quadric.push_back(Quadric::Point(p, point_weight));
+  quadric.reserve(vertices.size());
+  for (const VertexData& v : vertices) {
+    quadric.push_back(Quadric::Point(v.position, point_weight));
   }
-  weight.assign(position.size(), 1e-30);
-  facing.assign(position.size(), Eigen::Vector3d::Zero());
   for (size_t f = 0; f < mesh.NumFaces(); ++f) {
     const Eigen::Vector3d cross = mesh.FaceCross(f);
     const double norm = cross.norm();
@@ -80,13 +77,13 @@ void Collapser::Impl::BuildQuadrics(const TriMesh& mesh) {
     const Eigen::Vector3d n = cross / norm;
     const double w = norm / 6;  // a third of the area, per corner
     const Plane& plane = partition.clusters[label[f]].plane;
-    Quadric q =
-        Quadric::Plane(n, -n.dot(position[mesh.faces[f][0]]), (1 - share) * w);
+    Quadric q = Quadric::Plane(
+        n, -n.dot(vertices[mesh.faces[f][0]].position), (1 - share) * w);
     q += Quadric::Plane(plane.normal, plane.SignedDistance(center), share * w);
     for (const int v : mesh.faces[f]) {
       quadric[v] += q;
-      weight[v] += w;
-      facing[v] += w * n;
+      vertices[v].weight += w;
+      vertices[v].facing += w * n;
     }
   }
   for (const EdgeHandle e : kernel.edges()) {
@@ -94,11 +91,11 @@ void Collapser::Impl::BuildQuadrics(const TriMesh& mesh) {
     const HalfedgeHandle h = kernel.halfedge_handle(e, 0);
     const int a = kernel.from_vertex_handle(h).idx();
     const int b = kernel.to_vertex_handle(h).idx();
-    const Eigen::Vector3d d = position[b] - position[a];
+    const Eigen::Vector3d d = vertices[b].position - vertices[a].position;
     const double length_sq = d.squaredNorm();
     if (!(length_sq > 0)) continue;
     const Quadric q = Quadric::Line(
-        position[a],
+        vertices[a].position,
         d / std::sqrt(length_sq),
         length_sq * (kernel.is_boundary(e) ? options.mesh_boundary_weight
                                            : options.cluster_border_weight));
@@ -109,10 +106,13 @@ void Collapser::Impl::BuildQuadrics(const TriMesh& mesh) {
 
 double Collapser::Impl::AreaOf(OpenMesh::FaceHandle face) const {
   const HalfedgeHandle h = kernel.halfedge_handle(face);
-  const Eigen::Vector3d& p = position[kernel.from_vertex_handle(h).idx()];
-  const Eigen::Vector3d& q = position[kernel.to_vertex_handle(h).idx()];
+  const Eigen::Vector3d& p =
+      vertices[kernel.from_vertex_handle(h).idx()].position;
+  const Eigen::Vector3d& q =
+      vertices[kernel.to_vertex_handle(h).idx()].position;
   const Eigen::Vector3d& r =
-      position[kernel.to_vertex_handle(kernel.next_halfedge_handle(h)).idx()];
+      vertices[kernel.to_vertex_handle(kernel.next_halfedge_handle(h)).idx()]
+          .position;
   return 0.5 * (q - p).cross(r - p).norm();
 }
 
@@ -140,7 +140,9 @@ bool Collapser::Impl::FlipSideOf(OpenMesh::FaceHandle face) {
     const EdgeHandle e = kernel.edge_handle(h);
     if (border[e.idx()] || !kernel.is_flip_ok(e)) continue;
     const HalfedgeHandle o = kernel.opposite_halfedge_handle(h);
-    const auto at = [this](VertexHandle v) { return position[v.idx()]; };
+    const auto at = [this](VertexHandle v) {
+      return vertices[v.idx()].position;
+    };
     const Eigen::Vector3d a = at(kernel.from_vertex_handle(h));
     const Eigen::Vector3d b = at(kernel.to_vertex_handle(h));
     const Eigen::Vector3d c =
@@ -167,11 +169,12 @@ bool Collapser::Impl::MayMove(VertexHandle v,
     const VertexHandle v2 = kernel.to_vertex_handle(h);
     const VertexHandle v3 =
         kernel.to_vertex_handle(kernel.next_halfedge_handle(h));
-    if (!MayMoveCorner(position[v.idx()],
+    if (!MayMoveCorner(vertices[v.idx()].position,
                        target,
-                       position[v2.idx()],
-                       position[v3.idx()],
-                       facing[v.idx()] + facing[v2.idx()] + facing[v3.idx()],
+                       vertices[v2.idx()].position,
+                       vertices[v3.idx()].position,
+                       vertices[v.idx()].facing + vertices[v2.idx()].facing +
+                           vertices[v3.idx()].facing,
                        soft_limits)) {
       return false;
     }
@@ -188,15 +191,15 @@ bool Collapser::Impl::NudgeCornerOf(OpenMesh::FaceHandle face) {
   for (double step = 1e-5; step < 2e-3; step *= 10) {
     for (const VertexHandle v : kernel.fv_range(face)) {
       if (options.keep_mesh_boundary && kernel.is_boundary(v)) continue;
-      const Eigen::Vector3d old = position[v.idx()];
+      const Eigen::Vector3d old = vertices[v.idx()].position;
       for (int k = 0; k < 16; ++k) {
         const double angle = M_PI / 8 * k;
         const Eigen::Vector3d target =
             old + step * (std::cos(angle) * u + std::sin(angle) * w);
         if (!MayMove(v, target)) continue;
-        position[v.idx()] = target;
+        vertices[v.idx()].position = target;
         if (AreaOf(face) >= kNoNormal) return true;
-        position[v.idx()] = old;
+        vertices[v.idx()].position = old;
       }
     }
   }
@@ -215,7 +218,7 @@ void Collapser::Impl::RemoveFlatFaces() {
 
 void Collapser::Extract(SimplifyResult* result) const {
   const Impl& m = *impl_;
-  std::vector<int> index(m.position.size(), -1);
+  std::vector<int> index(m.vertices.size(), -1);
   for (const auto f : m.kernel.faces()) {
     std::array<int, 3> face;
     int k = 0;
@@ -224,7 +227,8 @@ void Collapser::Extract(SimplifyResult* result) const {
       if (i < 0) {
         i = static_cast<int>(result->vertex_birth.size());
         result->vertex_birth.push_back(v.idx());
-        result->mesh.vertices.push_back(m.position[v.idx()] + m.center);
+        result->mesh.vertices.push_back(m.vertices[v.idx()].position +
+                                        m.center);
       }
       face[k++] = i;
     }

@@ -38,6 +38,14 @@ struct Collapse {
   bool fixed_target = false;  // the vertex that stays may not move
 };
 
+// Of a vertex, in one line of the cache.
+struct alignas(64) VertexData {
+  Eigen::Vector3d position;  // about Collapser::Impl::center
+  Eigen::Vector3d facing = Eigen::Vector3d::Zero();  // normals times area
+  double weight = 1e-30;                             // area in the quadric
+  int border_degree = 0;                             // border edges at it
+};
+
 constexpr int kNumTargets = 4;  // of a collapse, see Plan
 
 struct Collapser::Impl {
@@ -76,6 +84,8 @@ struct Collapser::Impl {
   void Requeue(VertexHandle kept);
   void CountRing(HalfedgeHandle h, int sign);
   double ErrorOf(const Collapse& collapse) const;
+  double CostQuantile(double share) const;
+  bool Sweep(double goal, double max_cost);
   template <typename Wanted, typename Done>
   void Run(const Wanted& wanted, const Done& done);
 
@@ -89,17 +99,14 @@ struct Collapser::Impl {
   Kernel kernel;
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   double total_area = 0;
-  std::vector<Eigen::Vector3d> position;  // about `center`, a vertex
-  std::vector<Quadric> quadric;           // a vertex
-  std::vector<double> weight;             // area in the quadric, a vertex
-  std::vector<Eigen::Vector3d> facing;    // normals times area, a vertex
-  std::vector<int> border_degree;         // border edges at a vertex
-  std::vector<int> label;                 // a face
-  std::vector<uint8_t> border;            // an edge
-  std::vector<uint8_t> rejected;          // an edge, tried in vain
-  std::vector<uint8_t> attempt;           // an edge: see Run
-  std::vector<int> cluster_faces;         // faces left in a cluster
-  std::vector<int> cluster_inner;         // candidates of step 1 in a cluster
+  std::vector<VertexData> vertices;
+  std::vector<Quadric> quadric;    // a vertex
+  std::vector<int> label;          // a face
+  std::vector<uint8_t> border;     // an edge
+  std::vector<uint8_t> rejected;   // an edge, tried in vain
+  std::vector<uint8_t> attempt;    // an edge: see Run
+  std::vector<int> cluster_faces;  // faces left in a cluster
+  std::vector<int> cluster_inner;  // candidates of step 1 in a cluster
   int num_faces = 0, num_border = 0, num_collapses = 0;
   double max_error = 0;
   int active = 0;                      // classes of edges that may collapse now

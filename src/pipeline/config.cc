@@ -46,6 +46,7 @@ json SimplifySettings(const ReconstructOptions& o) {
           {"passes", o.simplify.passes},
           {"target_faces", o.simplify.target_faces},
           {"faces_per_m2", o.simplify.faces_per_m2},
+          {"sweep_ratio", o.simplify.sweep_ratio},
           {"free_error_m", o.simplify.free_error_m},
           {"max_error_m", o.simplify.max_error_m},
           {"cluster_plane_share", o.simplify.cluster_plane_share},

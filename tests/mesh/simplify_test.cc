@@ -48,21 +48,27 @@ TEST(Simplify, CubeBecomesTwelveTriangles) {
       SimplifyByPlanes(cube.mesh, cube.partition, options);
   ExpectSound(cube, result);
   EXPECT_EQ(result.mesh.NumFaces(), 12u);
-  EXPECT_NEAR(Area(result.mesh), 6, 1e-4);
+  constexpr double kPull = 3e-5;  // by the quadrics that anchor vertices [m]
+  EXPECT_NEAR(Area(result.mesh), 6, 24 * kPull);  // four corners a side
   for (size_t v = 0; v < result.mesh.NumVertices(); ++v) {
     EXPECT_LT(
         (result.mesh.vertices[v] - cube.mesh.vertices[result.vertex_birth[v]])
             .norm(),
-        3e-5);
+        kPull);
   }
+}
+
+// Half a plane and half a wave.
+LabelledMesh MakeWavySheet() {
+  return MakeSheet(24, [](double x, double y) {
+    return x <= 0.5 ? 0 : 0.02 * std::sin(25 * (x - 0.5)) * std::cos(12 * y);
+  });
 }
 
 // Breaks if the budget is missed, or shape is spent where it is flat: half the
 // sheet is a plane and half is a wave.
 TEST(Simplify, BudgetGoesWhereTheShapeIs) {
-  const LabelledMesh sheet = MakeSheet(24, [](double x, double y) {
-    return x <= 0.5 ? 0 : 0.02 * std::sin(25 * (x - 0.5)) * std::cos(12 * y);
-  });
+  const LabelledMesh sheet = MakeWavySheet();
   SimplifyOptions options;
   options.target_faces = 400;
   options.free_error_m = 0;
@@ -73,6 +79,46 @@ TEST(Simplify, BudgetGoesWhereTheShapeIs) {
   EXPECT_GE(result.mesh.NumFaces(), 398u);
   EXPECT_GT(result.partition.clusters[1].num_faces,
             2 * result.partition.clusters[0].num_faces);
+}
+
+// Breaks if sweeps go where the shape is, pile collapses up on one vertex, or
+// go on below what they should leave to the collapses by cost.
+TEST(Simplify, SweepsCostNoShape) {
+  const LabelledMesh sheet = MakeWavySheet();
+  SimplifyOptions options;
+  options.target_faces = 200;
+  options.free_error_m = 0;
+  options.sweep_ratio = 0;
+  const SimplifyResult plain =
+      SimplifyByPlanes(sheet.mesh, sheet.partition, options);
+  options.sweep_ratio = 2;
+  const SimplifyResult swept =
+      SimplifyByPlanes(sheet.mesh, sheet.partition, options);
+  ExpectSound(sheet, swept);
+  EXPECT_LE(swept.mesh.NumFaces(), 200u);
+  EXPECT_GE(swept.mesh.NumFaces(), 198u);
+  EXPECT_NE(swept.vertex_birth, plain.vertex_birth);  // there were sweeps
+  EXPECT_LE(swept.report.max_error_m, 1.1 * plain.report.max_error_m);
+}
+
+// Breaks if the budget by area goes on where a collapse costs too much.
+TEST(Simplify, DearCollapsesAreNotMade) {
+  const LabelledMesh sheet = MakeWavySheet();
+  SimplifyOptions options;
+  options.faces_per_m2 = 1;
+  options.free_error_m = 0;
+  double last_error = 1;
+  size_t last_faces = 0;
+  for (const double max_cost : {1e-6, 1e-8, 1e-10}) {
+    options.max_cost_m4 = max_cost;
+    const SimplifyResult result =
+        SimplifyByPlanes(sheet.mesh, sheet.partition, options);
+    ExpectSound(sheet, result);
+    EXPECT_GT(result.mesh.NumFaces(), last_faces);
+    EXPECT_LT(result.report.max_error_m, last_error);
+    last_faces = result.mesh.NumFaces();
+    last_error = result.report.max_error_m;
+  }
 }
 
 // Breaks if step 1 touches borders: every border vertex of the input is still
