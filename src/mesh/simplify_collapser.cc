@@ -86,11 +86,46 @@ bool Collapser::Impl::LinkAllows(const Collapse& collapse) const {
         kernel.edge_handle(kernel.prev_halfedge_handle(side));
     if (border[next.idx()] && border[prev.idx()]) return false;
   }
-  // is_collapse_ok only tags status bits of the one-rings: logically const.
-  if (!const_cast<Kernel&>(kernel).is_collapse_ok(h)) return false;
-  // A closed tetrahedron passes the test of the one-rings.
-  return kernel.valence(kernel.from_vertex_handle(h)) != 3 ||
-         kernel.valence(kernel.to_vertex_handle(h)) != 3;
+  return RingsAllow(h);
+}
+
+// The link condition: what the rings of the two vertices have in common is
+// opposite to the edge. OpenMesh's is_collapse_ok says the same but takes twice
+// the time, for it goes through three rings and marks their vertices.
+bool Collapser::Impl::RingsAllow(HalfedgeHandle h) const {
+  const VertexHandle ends[2] = {kernel.from_vertex_handle(h),
+                                kernel.to_vertex_handle(h)};
+  VertexHandle opposite[2];
+  for (int k = 0; k < 2; ++k) {
+    const HalfedgeHandle side = k == 0 ? h : kernel.opposite_halfedge_handle(h);
+    if (kernel.is_boundary(side)) continue;
+    const HalfedgeHandle next = kernel.next_halfedge_handle(side);
+    const HalfedgeHandle last = kernel.next_halfedge_handle(next);
+    // The face has no other neighbour: it would become an edge.
+    if (kernel.is_boundary(kernel.opposite_halfedge_handle(next)) &&
+        kernel.is_boundary(kernel.opposite_halfedge_handle(last))) {
+      return false;
+    }
+    opposite[k] = kernel.to_vertex_handle(next);
+  }
+  if (opposite[0] == opposite[1]) return false;
+  if (opposite[0].is_valid() && opposite[1].is_valid() &&
+      kernel.is_boundary(ends[0]) && kernel.is_boundary(ends[1])) {
+    return false;  // would join two boundaries
+  }
+  constexpr int kMost = 64;  // a fan of more is no shape to go on with
+  int ring[kMost], size = 0, other_size = 0;
+  for (const VertexHandle v : kernel.vv_range(ends[0])) {
+    if (size == kMost) return false;
+    ring[size++] = v.idx();
+  }
+  for (const VertexHandle v : kernel.vv_range(ends[1])) {
+    ++other_size;
+    if (v == opposite[0] || v == opposite[1]) continue;
+    if (std::find(ring, ring + size, v.idx()) != ring + size) return false;
+  }
+  // A closed tetrahedron passes the test of the rings.
+  return size != 3 || other_size != 3;
 }
 
 bool Collapser::Impl::ShapeAllows(const Collapse& collapse,

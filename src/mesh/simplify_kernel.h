@@ -69,6 +69,7 @@ struct Collapser::Impl {
   bool MayCollapse(EdgeHandle e) const;
   Collapse Plan(EdgeHandle e, int target) const;
   bool LinkAllows(const Collapse& collapse) const;
+  bool RingsAllow(HalfedgeHandle h) const;
   bool ShapeAllows(const Collapse& collapse, const ShapeLimits& limits) const;
   void Execute(const Collapse& collapse);
   void Push(EdgeHandle e);
