@@ -55,7 +55,7 @@ struct SimplifyOptions {
   // Of larger meshes, sweeps over all edges that collapse the cheaper half of
   // them leave this many times the budget to the collapses in order of cost,
   // which take several times as long a face. >= 1; 0 = no sweeps.
-  double sweep_ratio = 30;
+  double sweep_ratio = 40;
   // Collapses with a smaller rms error are made even below the budget [m].
   double free_error_m = 0.0003;
   // Collapses with a larger rms error are never made [m].
