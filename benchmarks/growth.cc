@@ -6,18 +6,22 @@
 //   bench-growth observations   of E_c, on 60 keyframes
 //   bench-growth keyframes      at 4 million observations, the default
 //   bench-growth MESH.ply ...   faces: the mesh stages on each
+//   bench-growth plot FILE.csv  what one of these printed, as a log-log plot
+//                               (SVG on stdout)
 //   bench-growth small          a smoke test
 //
 // A line a measurement on stdout, and as comments the exponents b of
 // time = a size^b, fitted to the logarithms over all sizes of a series.
 #include <malloc.h>
 
+#include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <map>
+#include <sstream>
 #include <string>
 #include <vector>
 
+#include "ablate/svg_plot.h"
 #include "benchmarks/bench_args.h"
 #include "benchmarks/bench_scene.h"
 #include "mesh/clean.h"
@@ -26,6 +30,7 @@
 #include "mesh/partition.h"
 #include "mesh/simplify.h"
 #include "problems/solve_blocks.h"
+#include "util/atomic_file.h"
 
 namespace facet {
 namespace {
@@ -137,6 +142,42 @@ void GrowFaces(const std::vector<std::string>& paths) {
   table.PrintExponents();
 }
 
+// A line an item of the column `what`, of CPU seconds over sizes.
+void DrawGrowth(const std::string& path) {
+  Plot plot;
+  plot.y_label = "CPU time [s]";
+  plot.log_y = true;
+  std::istringstream csv(ReadFile(path));
+  std::string row;
+  while (std::getline(csv, row)) {
+    char axis[40], what[40];
+    double size = 0, cpu_s = 0;
+    if (std::sscanf(row.c_str(),
+                    "%39[^,],%lf,%39[^,],%lf",
+                    axis,
+                    &size,
+                    what,
+                    &cpu_s) != 4) {
+      continue;  // header, exponents
+    }
+    plot.x_label = std::string("log10 of the number of ") + axis;
+    auto line = std::find_if(
+        plot.lines.begin(), plot.lines.end(), [&](const PlotLine& l) {
+          return l.label == what;
+        });
+    if (line == plot.lines.end()) {
+      PlotLine fresh;
+      fresh.label = what;
+      fresh.index = plot.lines.size();
+      fresh.markers = true;
+      line = plot.lines.insert(plot.lines.end(), fresh);
+    }
+    line->x.push_back(std::log10(size));
+    line->y.push_back(cpu_s);
+  }
+  std::printf("%s", DrawSvg(plot).c_str());
+}
+
 }  // namespace
 }  // namespace facet
 
@@ -152,11 +193,14 @@ int main(int argc, char** argv) {
         {1000000, 3000000, 10000000, 30000000, 100000000, 300000000});
   } else if (first == "keyframes") {
     GrowKeyframes({50, 100, 200, 400, 900}, 4000000);
+  } else if (first == "plot" && argc == 3) {
+    DrawGrowth(argv[2]);
   } else if (argc > 1) {
     GrowFaces({argv + 1, argv + argc});
   } else {
     std::fprintf(stderr,
-                 "usage: %s observations | keyframes | small | MESH.ply ...\n",
+                 "usage: %s observations | keyframes | plot FILE.csv | small | "
+                 "MESH.ply ...\n",
                  argv[0]);
     return 2;
   }
