@@ -146,6 +146,7 @@ void GrowFaces(const std::vector<std::string>& paths) {
 void DrawGrowth(const std::string& path) {
   Plot plot;
   plot.y_label = "CPU time [s]";
+  plot.x_from_zero = false;
   plot.log_y = true;
   std::istringstream csv(ReadFile(path));
   std::string row;

@@ -21,6 +21,7 @@ struct PlotLine {
 
 struct Plot {
   std::string title, x_label, y_label;
+  bool x_from_zero = true;
   bool log_y = false;  // points with y <= 0 are left out
   // Where finite: a dashed horizontal line, and what it means.
   double level = std::numeric_limits<double>::quiet_NaN();
