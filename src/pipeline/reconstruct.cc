@@ -43,14 +43,8 @@ class Run {
     CheckOptions(options_);
     sequence_ = OpenSequence(options_.sequence_path, options_.sequence);
     meanwhile_ = std::make_unique<Meanwhile>(options_, *sequence_);
-    const bool reads =
-        !FromFile(Stage::kKeyframes) && Wanted(Stage::kKeyframes);
-    if (reads) meanwhile_->ReadImages();
+    if (ReadsImages()) meanwhile_->ReadImages();
     RunPartition();
-    if (reads && draw_early_) {
-      meanwhile_->DrawDense(
-          dense_, sequence_->ColorPoses(meanwhile_->Keyframes().keyframes));
-    }
     if (Wanted(Stage::kSimplify)) RunSimplify();
     if (Wanted(Stage::kKeyframes)) RunKeyframes();
     if (Wanted(Stage::kPhotometric)) RunPhotometric();
@@ -62,6 +56,9 @@ class Run {
  private:
   bool Wanted(Stage stage) const { return stage <= options_.to_stage; }
   bool FromFile(Stage stage) const { return stage < options_.from_stage; }
+  bool ReadsImages() const {
+    return !FromFile(Stage::kKeyframes) && Wanted(Stage::kKeyframes);
+  }
 
   // What can be refused is refused before the work starts.
   void CheckFolder() const {
@@ -171,6 +168,10 @@ class Run {
 
   void RunSimplify() {
     StageClock clock = Begin("simplify");
+    if (ReadsImages() && draw_early_) {
+      meanwhile_->DrawDense(
+          dense_, sequence_->ColorPoses(meanwhile_->Keyframes().keyframes));
+    }
     if (FromFile(Stage::kSimplify)) {
       simplified_ = LoadMeshArtefact(options_, Stage::kSimplify);
       RestoreWarnings(simplified_.warnings);

@@ -4,9 +4,12 @@
 
 #include <cstdio>
 
+#include "util/progress.h"
+
 namespace facet {
 
 void PrintLine(const std::string& line) {
+  ClearProgressLine();
   std::printf("%s\n", line.c_str());
   std::fflush(stdout);
 }

@@ -9,13 +9,17 @@
 
 namespace facet {
 
+void ClearProgressLine() {
+  if (isatty(STDERR_FILENO) != 0) std::fprintf(stderr, "\r\033[K");
+}
+
 Progress::Progress(std::string label, size_t total)
     : label_(std::move(label)),
       total_(total),
       enabled_(total > 0 && isatty(STDERR_FILENO) != 0) {}
 
 Progress::~Progress() {
-  if (enabled_ && shown_percent_ >= 0) std::fprintf(stderr, "\r\033[K");
+  if (enabled_ && shown_percent_ >= 0) ClearProgressLine();
 }
 
 void Progress::Add(size_t steps) {

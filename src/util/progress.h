@@ -29,4 +29,8 @@ class Progress {
   bool enabled_;
 };
 
+// Before other output while a bar may be on the line, of a loop on another
+// thread: its next step draws the bar anew.
+void ClearProgressLine();
+
 }  // namespace facet
