@@ -182,6 +182,7 @@ std::string FlagOfSetting(const std::string& setting) {
       {"target_faces", "simplify_faces"},
       {"faces_per_m2", "simplify_faces_per_m2"},
       {"cluster_plane_share", "simplify_plane_share"},
+      {"sweep_ratio", "simplify_sweep_ratio"},
       {"min_depth_m", "min_depth"},
       {"max_depth_m", "max_depth"},
       {"window", "keyframe_window"},
