@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <map>
 #include <sstream>
 #include <string>
@@ -179,14 +180,9 @@ void DrawGrowth(const std::string& path) {
   std::printf("%s", DrawSvg(plot).c_str());
 }
 
-}  // namespace
-}  // namespace facet
-
-int main(int argc, char** argv) {
-  using namespace facet;
-  google::InitGoogleLogging(argv[0]);
-  FLAGS_minloglevel = google::ERROR;
-  const std::string first = argc > 1 ? argv[1] : "";
+// False if there is nothing to do.
+bool Run(const std::vector<std::string>& args) {
+  const std::string first = args.empty() ? "" : args[0];
   if (first == "small") {
     GrowKeyframes({4, 6}, 20000);
   } else if (first == "observations") {
@@ -194,15 +190,29 @@ int main(int argc, char** argv) {
         {1000000, 3000000, 10000000, 30000000, 100000000, 300000000});
   } else if (first == "keyframes") {
     GrowKeyframes({50, 100, 200, 400, 900}, 4000000);
-  } else if (first == "plot" && argc == 3) {
-    DrawGrowth(argv[2]);
-  } else if (argc > 1) {
-    GrowFaces({argv + 1, argv + argc});
-  } else {
-    std::fprintf(stderr,
-                 "usage: %s observations | keyframes | plot FILE.csv | small | "
-                 "MESH.ply ...\n",
-                 argv[0]);
-    return 2;
+  } else if (first == "plot" && args.size() == 2) {
+    DrawGrowth(args[1]);
+  } else if (!args.empty()) {
+    GrowFaces(args);
   }
+  return !args.empty();
+}
+
+}  // namespace
+}  // namespace facet
+
+int main(int argc, char** argv) {
+  google::InitGoogleLogging(argv[0]);
+  FLAGS_minloglevel = google::ERROR;
+  try {
+    if (facet::Run({argv + 1, argv + argc})) return 0;
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "%s: error: %s\n", argv[0], e.what());
+    return 1;
+  }
+  std::fprintf(stderr,
+               "usage: %s observations | keyframes | plot FILE.csv | small | "
+               "MESH.ply ...\n",
+               argv[0]);
+  return 2;
 }

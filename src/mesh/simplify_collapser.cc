@@ -70,7 +70,7 @@ Collapse Collapser::Impl::Plan(EdgeHandle e, int target) const {
   return plan;
 }
 
-// Link condition on the labels and on the mesh (OpenMesh): the cheaper first.
+// Link condition on the labels and on the mesh: the cheaper one first.
 bool Collapser::Impl::LinkAllows(const Collapse& collapse) const {
   const HalfedgeHandle h = collapse.halfedge;
   int lost_cluster = -1;
@@ -90,8 +90,8 @@ bool Collapser::Impl::LinkAllows(const Collapse& collapse) const {
 }
 
 // The link condition: what the rings of the two vertices have in common is
-// opposite to the edge. OpenMesh's is_collapse_ok says the same but takes twice
-// the time, for it goes through three rings and marks their vertices.
+// opposite to the edge. The rules are those of OpenMesh's is_collapse_ok, which
+// goes through three rings and marks their vertices.
 bool Collapser::Impl::RingsAllow(HalfedgeHandle h) const {
   const VertexHandle ends[2] = {kernel.from_vertex_handle(h),
                                 kernel.to_vertex_handle(h)};
