@@ -108,7 +108,6 @@ class Drawing {
       x_low = y_low = 1;
       x_high = y_high = 2;
     }
-    // Times and iterations begin at 0.
     x_ = LinearScale(plot.x_from_zero ? std::min(0.0, x_low) : x_low, x_high);
     y_ = plot.log_y ? LogScale(y_low, y_high) : LinearScale(y_low, y_high);
   }

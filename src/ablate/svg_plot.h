@@ -21,8 +21,8 @@ struct PlotLine {
 
 struct Plot {
   std::string title, x_label, y_label;
-  bool x_from_zero = true;
-  bool log_y = false;  // points with y <= 0 are left out
+  bool x_from_zero = true;  // as times and iterations begin
+  bool log_y = false;       // points with y <= 0 are left out
   // Where finite: a dashed horizontal line, and what it means.
   double level = std::numeric_limits<double>::quiet_NaN();
   std::string level_label;

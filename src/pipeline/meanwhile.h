@@ -28,8 +28,9 @@ class Meanwhile {
   // as to need them.
   void ReadImages();
 
-  // Wait for them; to be called after ReadImages. Throw as ChooseKeyframes and
-  // LoadKeyframeColors. Colours can be taken once and may be empty.
+  // Wait for them. Throw as ChooseKeyframes and LoadKeyframeColors. Keyframes
+  // are there after ReadImages only; without it, or taken already, the colours
+  // are empty.
   const KeyframeChoice& Keyframes();
   KeyframeImages TakeColors();
 

@@ -21,7 +21,7 @@ class Background {
   Background& operator=(const Background&) = delete;
 
   // Returns when the work is done, to which this thread lends a hand. Throws
-  // what the work threw. Call once.
+  // what the work threw. Called again it returns at once.
   void Finish();
 
  private:

@@ -30,6 +30,7 @@ TEST_P(ThreadCount, FinishBringsTheResult) {
   std::atomic<int> sum{0};
   ParallelFor(0, 100, [&](size_t i) { sum += static_cast<int>(i); });
   background.Finish();
+  background.Finish();  // nothing more to wait for
   EXPECT_EQ(sum, 4950);
   for (size_t i = 0; i < squares.size(); ++i) {
     ASSERT_EQ(squares[i], static_cast<int>(i * i));
