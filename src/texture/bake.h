@@ -58,7 +58,7 @@ struct BakeOptions {
   // Visibility is tested at one texel of a square of so many; a texel is
   // smaller than a pixel of the depth image that decides. 1 = at every texel.
   int visibility_px = 2;
-  int ring_px = 4;      // gutter coloured from the images; the rest is copied
+  int ring_px = 2;      // gutter coloured from the images; the rest is copied
   bool inpaint = true;  // fill unseen texels; else they stay white
 };
 

@@ -12,7 +12,7 @@
 namespace facet {
 namespace {
 
-float Luma(const Eigen::Array4f& rgb) {
+float Luma(const Eigen::Array3f& rgb) {
   return (0.299f * rgb.x() + 0.587f * rgb.y() + 0.114f * rgb.z()) / 255.0f;
 }
 
@@ -38,6 +38,40 @@ std::vector<float> Sharpness(const KeyframeImages& images, double power) {
   return sharpness;
 }
 
+void ColorSums::Add(size_t block,
+                    const float* const rgb[3],
+                    const float* weight,
+                    const ByteExposure* exposure) {
+  // Copied: the compiler must see that no sum is a weight.
+  float w[kBlock];
+  std::copy_n(weight, kBlock, w);
+  float* sum = rows_.data() + kBlock * block;
+  for (size_t i = 0; i < kBlock; ++i) sum[i] += w[i];
+  for (int k = 0; k < 3; ++k) {
+    sum += stride_;
+    float c[kBlock];
+    std::copy_n(rgb[k], kBlock, c);
+    for (size_t i = 0; i < kBlock; ++i) sum[i] += w[i] * c[i];
+  }
+  if (!exposure) return;
+  for (const Eigen::Array3f* terms : {&exposure->inverse, &exposure->shift}) {
+    for (int k = 0; k < 3; ++k) {
+      sum += stride_;
+      const float term = (*terms)[k];
+      for (size_t i = 0; i < kBlock; ++i) sum[i] += w[i] * term;
+    }
+  }
+}
+
+Eigen::Vector3f ColorSums::Mean(size_t texel, float share_of_exposures) const {
+  const float weight = Weight(texel);
+  const Eigen::Array3f mean = Three(1, texel) / weight;
+  if (!(share_of_exposures > 0)) return mean.matrix();
+  const Eigen::Array3f as_seen =
+      (mean * Three(4, texel) - Three(7, texel)) / weight;
+  return (mean + share_of_exposures * (as_seen - mean)).matrix();
+}
+
 size_t DropOutliers(size_t n,
                     size_t owned,
                     size_t num_views,
@@ -51,7 +85,7 @@ size_t DropOutliers(size_t n,
     for (size_t v = 0; v < num_views; ++v) {
       const ColorSample& sample = (*samples)[n * v + i];
       if (!(sample.weight > 0)) continue;
-      lumas.emplace_back(Luma(sample.color), sample.weight);
+      lumas.emplace_back(Luma(sample.rgb), sample.weight);
       total += sample.weight;
     }
     if (lumas.size() < 2) continue;
@@ -66,7 +100,7 @@ size_t DropOutliers(size_t n,
     for (size_t v = 0; v < num_views; ++v) {
       ColorSample& sample = (*samples)[n * v + i];
       if (!(sample.weight > 0)) continue;
-      if (std::abs(Luma(sample.color) - median) <= limit) continue;
+      if (std::abs(Luma(sample.rgb) - median) <= limit) continue;
       sample.weight = 0;
       dropped += i < owned;
     }

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <vector>
 
 #include "texture/keyframe_images.h"
@@ -14,50 +15,60 @@ namespace facet {
 
 // One image lookup and what it counts.
 struct ColorSample {
-  Eigen::Array4f color = Eigen::Array4f::Zero();  // (rgb, 1), 0-255
-  float weight = 0;                               // 0 = not there
+  Eigen::Array3f rgb = Eigen::Array3f::Zero();  // 0-255, at the common exposure
+  float weight = 0;                             // 0 = not there
 };
 
 // Sharpness of every keyframe relative to the median one; all 1 if power is 0.
 std::vector<float> Sharpness(const KeyframeImages& images, double power);
 
-// The exposure of a keyframe in the form of ColorSum: (red, green, blue, 1).
-struct ExposureLanes {
-  explicit ExposureLanes(const Exposure& exposure) {
-    gain << exposure.gain, 1;
-    offset << 255.0f * exposure.offset, 0;
-    inverse << exposure.gain.inverse(), 0;
-    shift = offset * inverse;
-  }
+// The exposure of a keyframe, for colours of 0 to 255.
+struct ByteExposure {
+  explicit ByteExposure(const Exposure& exposure)
+      : gain(exposure.gain),
+        offset(255.0f * exposure.offset),
+        inverse(gain.inverse()),
+        shift(offset * inverse) {}
 
-  Eigen::Array4f gain, offset;    // C' = gain C + offset, 0-255
-  Eigen::Array4f inverse, shift;  // C = inverse C' - shift
+  Eigen::Array3f gain, offset;    // C' = gain C + offset
+  Eigen::Array3f inverse, shift;  // C = inverse C' - shift
 };
 
-// Sums over the samples of one texel.
-struct ColorSum {
-  // (w C', w)
-  Eigen::Array4f color = Eigen::Array4f::Zero();
-  // Of the way back to the exposures of the samples: w inverse, w shift.
-  Eigen::Array4f inverse = Eigen::Array4f::Zero();
-  Eigen::Array4f shift = Eigen::Array4f::Zero();
+// Sums over the samples of the texels of a tile, in rows of memory: the loops
+// over a row are the compiler's to vectorise.
+class ColorSums {
+ public:
+  // Texels are added in blocks of so many.
+  static constexpr size_t kBlock = 16;
 
-  float weight() const { return color[3]; }
+  explicit ColorSums(size_t num_blocks)
+      : stride_(kBlock * num_blocks), rows_(kRows * stride_, 0.0f) {}
 
-  void Add(const Eigen::Array4f& corrected, float w) { color += w * corrected; }
-  void AddExposure(const ExposureLanes& exposure, float w) {
-    inverse += w * exposure.inverse;
-    shift += w * exposure.shift;
-  }
+  // Adds samples of the texels of one block, `rgb` in three rows of kBlock at
+  // the common exposure, and of the way back to the exposure they were taken
+  // at, which may be null.
+  void Add(size_t block,
+           const float* const rgb[3],
+           const float* weight,
+           const ByteExposure* exposure);
+
+  float Weight(size_t texel) const { return rows_[texel]; }
 
   // The mean, taken the given share of the way from the common exposure back to
-  // those of its samples: to their weighted mean of C. weight() > 0.
-  Eigen::Vector3f Mean(float share_of_exposures) const {
-    const Eigen::Array4f mean = color / color[3];
-    if (!(share_of_exposures > 0)) return mean.head<3>().matrix();
-    const Eigen::Array4f as_seen = (mean * inverse - shift) / color[3];
-    return (mean + share_of_exposures * (as_seen - mean)).head<3>().matrix();
+  // those of its samples: to their weighted mean of C. Weight() > 0.
+  Eigen::Vector3f Mean(size_t texel, float share_of_exposures) const;
+
+ private:
+  // w; w C'; w inverse; w shift.
+  static constexpr size_t kRows = 10;
+
+  Eigen::Array3f Three(size_t row, size_t texel) const {
+    const float* at = rows_.data() + row * stride_ + texel;
+    return {at[0], at[stride_], at[2 * stride_]};
   }
+
+  size_t stride_;
+  std::vector<float> rows_;
 };
 
 // Sample i of view v of n texels is samples[n v + i]. Sets the weight of

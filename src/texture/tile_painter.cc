@@ -13,8 +13,9 @@
 namespace facet {
 namespace {
 
-using Eigen::Array4f;
 using Eigen::Vector3f;
+
+constexpr size_t kBlock = ColorSums::kBlock;
 
 // Which texels of a tile any keyframe sees by the strict tests.
 std::vector<uint64_t> SeenWell(const BakeTile& tile,
@@ -28,7 +29,9 @@ std::vector<uint64_t> SeenWell(const BakeTile& tile,
 
 }  // namespace
 
-// One tile, its sums, and the buffers that its lookups share.
+// One tile, its sums, and the samples of the current view. Texels are handled
+// in blocks: those of which a view shows any are looked up as a whole, and what
+// it does not show has the weight 0.
 struct TilePainter::TileWork {
   TileWork(const BakeTile& tile_of,
            const BakeTexels& texels,
@@ -38,40 +41,57 @@ struct TilePainter::TileWork {
       : tile(tile_of),
         chart(chart_of),
         views(views_of),
+        num_texels(tile.end - tile.begin),
         num_owned(tile.owned_end - tile.begin),
-        sums(tile.end - tile.begin),
-        points(sums.size()),
-        bit(sums.size()),
-        is_mild(sums.size()),
-        seen(sums.size()),
-        lanes(5 * sums.size()),
-        colors{lanes.data(),
-               lanes.data() + sums.size(),
-               lanes.data() + 2 * sums.size(),
-               lanes.data() + 3 * sums.size(),
-               lanes.data() + 4 * sums.size()} {
+        num_blocks((num_texels + kBlock - 1) / kBlock),
+        sums(num_blocks),
+        points(kBlock * num_blocks),
+        bit(num_texels),
+        is_mild(num_texels),
+        lanes(6 * kBlock * num_blocks),
+        colors{Lane(0), Lane(1), Lane(2), Lane(3), Lane(4)},
+        weight(Lane(5)) {
     const std::vector<uint64_t> seen_well = SeenWell(tile, views);
     const auto to_mild = static_cast<uint32_t>(64 * seen_well.size());
-    for (size_t i = 0; i < sums.size(); ++i) {
-      const Vector3f& q = points_of[tile.begin + i];
-      points[i] = {q.x(), q.y(), q.z(), 0.0f};
+    for (size_t i = 0; i < num_texels; ++i) {
       bit[i] = texels.source[tile.begin + i] - tile.begin;
       is_mild[i] = !(seen_well[bit[i] / 64] >> (bit[i] % 64) & 1);
       if (is_mild[i]) bit[i] += to_mild;
     }
+    for (size_t i = 0; i < points.size(); ++i) {
+      const size_t texel = std::min(i, num_texels - 1);
+      const Vector3f& q = points_of[tile.begin + texel];
+      points[i] = {q.x(), q.y(), q.z(), 0.0f};
+    }
+    ids.reserve(points.size());
+    blocks.reserve(num_blocks);
+  }
+
+  float* Lane(size_t k) { return lanes.data() + k * kBlock * num_blocks; }
+
+  // How many of the current samples are of texels in faces.
+  size_t CountOwned() const {
+    size_t count = 0;
+    for (size_t j = 0; j < ids.size(); ++j) {
+      count += ids[j] < num_owned && weight[j] > 0;
+    }
+    return count;
   }
 
   const BakeTile& tile;
   const Chart& chart;
   const std::vector<TileSights::View>& views;
-  const size_t num_owned;
-  std::vector<ColorSum> sums;
-  std::vector<PhotoTexel> points;
-  std::vector<uint32_t> bit;     // of each texel in the words of a view
-  std::vector<uint8_t> is_mild;  // no keyframe sees it by the strict tests
-  std::vector<uint32_t> seen;    // the texels that the current view shows
+  const size_t num_texels, num_owned, num_blocks;
+  ColorSums sums;
+  std::vector<PhotoTexel> points;  // of whole blocks
+  std::vector<uint32_t> bit;       // of each texel in the words of a view
+  std::vector<uint8_t> is_mild;    // no keyframe sees it by the strict tests
+
+  // Of the current view: the blocks, their texels, the samples of these.
+  std::vector<uint32_t> blocks, ids;
   std::vector<float> lanes;
-  PhotoColors colors;  // of those
+  PhotoColors colors;
+  float* weight;
 };
 
 TilePainter::TilePainter(const TextureState& state,
@@ -110,7 +130,7 @@ void TilePainter::MakeViews() {
     View view = {PhotoFrame(),
                  pose.CenterInSource().cast<float>(),
                  &state_.images.rgb[k],
-                 ExposureLanes(state_.images.ExposureOf(k)),
+                 ByteExposure(state_.images.ExposureOf(k)),
                  sharpness[k]};
     SetFrameCamera(camera_, lattice_, &view.frame);
     double block[kPoseSize];
@@ -179,94 +199,129 @@ float TilePainter::Powers(const View& view,
       static_cast<float>(options_.sharpness_power) * std::log2(view.sharpness));
 }
 
-float TilePainter::WeightAt(
-    const View& view, const TileWork& work, size_t i, float u, float v) const {
-  float weight = 1;
-  if (options_.border_feather_px > 0) {
-    const float border =
-        std::min(std::min(u, static_cast<float>(camera_.width - 1) - u),
-                 std::min(v, static_cast<float>(camera_.height - 1) - v));
-    weight = std::clamp(
-        border / static_cast<float>(options_.border_feather_px), 1e-3f, 1.0f);
+// Lists the blocks with a texel that the view shows; weights are 1 where it
+// does and 0 elsewhere.
+void TilePainter::FindShown(const TileSights::View& sight,
+                            TileWork* work) const {
+  work->blocks.clear();
+  work->ids.clear();
+  for (size_t block = 0; block < work->num_blocks; ++block) {
+    const size_t begin = kBlock * block;
+    const size_t end = std::min(begin + kBlock, work->num_texels);
+    float* shown = work->weight + work->ids.size();
+    float any = 0;
+    std::fill(shown, shown + kBlock, 0.0f);
+    for (size_t i = begin; i < end; ++i) {
+      const uint32_t bit = work->bit[i];
+      shown[i - begin] =
+          static_cast<float>(sight.words[bit / 64] >> (bit % 64) & 1);
+      any += shown[i - begin];
+    }
+    if (any == 0) continue;
+    work->blocks.push_back(static_cast<uint32_t>(block));
+    for (size_t i = 0; i < kBlock; ++i) {
+      work->ids.push_back(static_cast<uint32_t>(begin + i));
+    }
   }
-  if (has_powers_) weight *= Powers(view, work.tile.begin + i, work.chart);
-  if (options_.best_view_power == 1) return weight;
-  return std::exp2(static_cast<float>(options_.best_view_power) *
-                   std::log2(weight));
 }
 
-// Lists the texels that a view shows. Returns how many.
-size_t TilePainter::FindSeen(const TileSights::View& sight,
-                             TileWork* work) const {
-  size_t n = 0;
-  for (uint32_t i = 0; i < work->bit.size(); ++i) {
-    const uint32_t bit = work->bit[i];
-    work->seen[n] = i;
-    n += sight.words[bit / 64] >> (bit % 64) & 1;
-  }
-  return n;
-}
-
-// Calls use(i, colour, weight) for the texels of the tile that a view shows.
-template <typename Use>
-void TilePainter::LookUp(const TileSights::View& sight,
-                         TileWork* work,
-                         const Use& use) const {
+// Samples of the tile in one view, at the common exposure.
+void TilePainter::LookUp(const TileSights::View& sight, TileWork* work) const {
   const View& view = views_[sight.keyframe];
-  const size_t n = FindSeen(sight, work);
-  const PhotoColors& colors = work->colors;
+  FindShown(sight, work);
   GetPhotoKernel().sample_rgb(view.frame,
                               view.rgb->ptr<uint8_t>(),
                               static_cast<ptrdiff_t>(view.rgb->step[0]),
                               work->points.data(),
-                              work->seen.data(),
-                              n,
-                              colors);
+                              work->ids.data(),
+                              work->ids.size(),
+                              work->colors);
+  Weigh(view, work);
+  if (options_.sampler == BakeSampler::kBicubic) LookUpSmoothly(view, work);
+  ToCommonExposure(view, work);
+}
+
+// Multiplies by what a sample at (u, v) counts: nothing outside of the image.
+void TilePainter::Weigh(const View& view, TileWork* work) const {
+  const size_t n = work->ids.size();
   const float right = static_cast<float>(camera_.width - 1);
   const float bottom = static_cast<float>(camera_.height - 1);
+  const float per_px = options_.border_feather_px > 0
+                           ? 1 / static_cast<float>(options_.border_feather_px)
+                           : 1e9f;
+  const float *u = work->colors.u, *v = work->colors.v;
+  float* weight = work->weight;
   for (size_t j = 0; j < n; ++j) {
-    const float u = colors.u[j], v = colors.v[j];
-    if (!(u >= 0 && v >= 0 && u <= right && v <= bottom)) continue;
-    Array4f taken(colors.red[j], colors.green[j], colors.blue[j], 1);
-    if (options_.sampler == BakeSampler::kBicubic) {
-      taken.head<3>() = BicubicRgb(*view.rgb, u, v).array();
+    const float border =
+        std::min(std::min(u[j], right - u[j]), std::min(v[j], bottom - v[j]));
+    const float ramp = std::min(std::max(border * per_px, 1e-3f), 1.0f);
+    weight[j] *= border >= 0 ? ramp : 0.0f;
+  }
+  if (!has_powers_ && options_.best_view_power == 1) return;
+  const float power = static_cast<float>(options_.best_view_power);
+  for (size_t j = 0; j < n; ++j) {
+    if (!(weight[j] > 0)) continue;
+    if (has_powers_) {
+      weight[j] *= Powers(view, work->tile.begin + work->ids[j], work->chart);
     }
-    const size_t i = work->seen[j];
-    use(i,
-        Array4f(view.exposure.gain * taken + view.exposure.offset),
-        WeightAt(view, *work, i, u, v));
+    weight[j] = std::exp2(power * std::log2(weight[j]));
   }
 }
 
-void TilePainter::AddTo(const View& view,
-                        const Array4f& color,
-                        float weight,
-                        ColorSum* sum) const {
-  sum->Add(color, weight);
-  if (exposure_share_ > 0) sum->AddExposure(view.exposure, weight);
+// The colours again, by the bicubic sampler.
+void TilePainter::LookUpSmoothly(const View& view, TileWork* work) const {
+  const PhotoColors& c = work->colors;
+  for (size_t j = 0; j < work->ids.size(); ++j) {
+    if (!(work->weight[j] > 0)) continue;
+    const Vector3f rgb = BicubicRgb(*view.rgb, c.u[j], c.v[j]);
+    c.red[j] = rgb.x();
+    c.green[j] = rgb.y();
+    c.blue[j] = rgb.z();
+  }
+}
+
+void TilePainter::ToCommonExposure(const View& view, TileWork* work) const {
+  const PhotoColors& c = work->colors;
+  float* const rows[3] = {c.red, c.green, c.blue};
+  const size_t n = work->ids.size();
+  for (int k = 0; k < 3; ++k) {
+    const float gain = view.exposure.gain[k], offset = view.exposure.offset[k];
+    float* row = rows[k];
+    for (size_t j = 0; j < n; ++j) row[j] = gain * row[j] + offset;
+  }
+}
+
+// The current samples to the sums.
+void TilePainter::Add(const View& view, TileWork* work) const {
+  const PhotoColors& c = work->colors;
+  const ByteExposure* exposure = exposure_share_ > 0 ? &view.exposure : nullptr;
+  for (size_t b = 0; b < work->blocks.size(); ++b) {
+    const size_t at = kBlock * b;
+    const float* const rgb[3] = {c.red + at, c.green + at, c.blue + at};
+    work->sums.Add(work->blocks[b], rgb, work->weight + at, exposure);
+  }
 }
 
 void TilePainter::Sum(TileWork* work, BakeReport* report) const {
   for (const TileSights::View& sight : work->views) {
-    const View& view = views_[sight.keyframe];
-    LookUp(sight, work, [&](size_t i, const Array4f& color, float weight) {
-      AddTo(view, color, weight, &work->sums[i]);
-      report->samples += i < work->num_owned;
-    });
+    LookUp(sight, work);
+    report->samples += work->CountOwned();
+    Add(views_[sight.keyframe], work);
   }
 }
 
 // Without outliers, for which all samples must be kept.
 void TilePainter::SumRobustly(TileWork* work, BakeReport* report) const {
-  const size_t n = work->sums.size(), num_views = work->views.size();
+  const size_t n = work->points.size(), num_views = work->views.size();
+  const PhotoColors& c = work->colors;
   std::vector<ColorSample> samples(n * num_views);
   for (size_t v = 0; v < num_views; ++v) {
-    LookUp(work->views[v],
-           work,
-           [&](size_t i, const Array4f& color, float weight) {
-             samples[n * v + i] = {color, weight};
-             report->samples += i < work->num_owned;
-           });
+    LookUp(work->views[v], work);
+    report->samples += work->CountOwned();
+    for (size_t j = 0; j < work->ids.size(); ++j) {
+      samples[n * v + work->ids[j]] = {{c.red[j], c.green[j], c.blue[j]},
+                                       work->weight[j]};
+    }
   }
   report->dropped = DropOutliers(n,
                                  work->num_owned,
@@ -274,12 +329,16 @@ void TilePainter::SumRobustly(TileWork* work, BakeReport* report) const {
                                  static_cast<float>(options_.robust_luma),
                                  &samples);
   for (size_t v = 0; v < num_views; ++v) {
-    const View& view = views_[work->views[v].keyframe];
-    for (size_t i = 0; i < n; ++i) {
-      const ColorSample& sample = samples[n * v + i];
-      if (!(sample.weight > 0)) continue;
-      AddTo(view, sample.color, sample.weight, &work->sums[i]);
+    const TileSights::View& sight = work->views[v];
+    FindShown(sight, work);
+    for (size_t j = 0; j < work->ids.size(); ++j) {
+      const ColorSample& sample = samples[n * v + work->ids[j]];
+      c.red[j] = sample.rgb[0];
+      c.green[j] = sample.rgb[1];
+      c.blue[j] = sample.rgb[2];
+      work->weight[j] = sample.weight;
     }
+    Add(views_[sight.keyframe], work);
   }
 }
 
@@ -293,9 +352,9 @@ void TilePainter::PaintTile(size_t t) {
   } else {
     Sum(&work, &report);
   }
-  for (size_t i = 0; i < work.sums.size(); ++i) {
-    if (!(work.sums[i].weight() > 0)) continue;
-    colors_[tile.begin + i] = work.sums[i].Mean(exposure_share_);
+  for (size_t i = 0; i < work.num_texels; ++i) {
+    if (!(work.sums.Weight(i) > 0)) continue;
+    colors_[tile.begin + i] = work.sums.Mean(i, exposure_share_);
     seen_[tile.begin + i] = 1;
     if (i >= work.num_owned) continue;
     ++report.seen;

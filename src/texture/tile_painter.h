@@ -37,7 +37,7 @@ class TilePainter {
     PhotoFrame frame;
     Eigen::Vector3f center;
     const cv::Mat* rgb = nullptr;
-    ExposureLanes exposure;
+    ByteExposure exposure;
     float sharpness = 1;
   };
   struct TileWork;
@@ -47,17 +47,12 @@ class TilePainter {
                 const std::vector<char>& only_faces) const;
   BakeReport Total() const;
   float Powers(const View& view, size_t texel, const Chart& chart) const;
-  float WeightAt(
-      const View& view, const TileWork& work, size_t i, float u, float v) const;
-  size_t FindSeen(const TileSights::View& sight, TileWork* work) const;
-  template <typename Use>
-  void LookUp(const TileSights::View& sight,
-              TileWork* work,
-              const Use& use) const;
-  void AddTo(const View& view,
-             const Eigen::Array4f& color,
-             float weight,
-             ColorSum* sum) const;
+  void FindShown(const TileSights::View& sight, TileWork* work) const;
+  void LookUp(const TileSights::View& sight, TileWork* work) const;
+  void Weigh(const View& view, TileWork* work) const;
+  void LookUpSmoothly(const View& view, TileWork* work) const;
+  void ToCommonExposure(const View& view, TileWork* work) const;
+  void Add(const View& view, TileWork* work) const;
   void Sum(TileWork* work, BakeReport* report) const;
   void SumRobustly(TileWork* work, BakeReport* report) const;
   void PaintTile(size_t t);
