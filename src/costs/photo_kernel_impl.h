@@ -30,8 +30,8 @@ inline void SamplePlain(const PhotoFrame& frame,
     const int m = ChunkSize(n - begin);
     Load(texels, ids + begin, m, &c);
     Project(frame, &c, counts);
-    if (frame.warp) WarpAnywhere(frame, &c);
-    SampleBilinear(frame, &c, counts);
+    if (frame.warp) WarpAnywhere<false>(frame, &c);
+    SampleBilinear<false>(frame, &c, counts);
     for (int i = 0; i < m; ++i) intensity[begin + i] = c.value.v[i];
   }
   counts->used += n;
@@ -53,7 +53,7 @@ void Sample(const PhotoFrame& frame,
     const int m = ChunkSize(n - begin);
     Load(texels, ids + begin, m, &c);
     Project(frame, &c, counts);
-    if (frame.warp) WarpAnywhere(frame, &c);
+    if (frame.warp) WarpAnywhere<false>(frame, &c);
     SampleImage(frame, &c, counts);
     StoreIntensity(frame, c, m, intensity + begin);
   }
@@ -82,7 +82,7 @@ void SampleGradient(const PhotoFrame& frame,
     const int m = ChunkSize(n - begin);
     Load(texels, ids + begin, m, &c);
     Project(frame, &c, counts);
-    if (frame.warp) WarpAnywhere(frame, &c);
+    if (frame.warp) WarpAnywhere<true>(frame, &c);
     SampleImage(frame, &c, counts);
     PointGradient(frame, frame.warp != nullptr, c, &ha, &hb, &hc);
     StoreIntensity(frame, c, m, intensity + begin);
@@ -94,18 +94,18 @@ void SampleGradient(const PhotoFrame& frame,
   counts->used += n;
 }
 
-// Bytes of a pixel as numbers.
-inline float Red(uint32_t pixel) { return static_cast<float>(pixel & 255); }
-inline float Green(uint32_t pixel) {
-  return static_cast<float>(pixel >> 8 & 255);
-}
-inline float Blue(uint32_t pixel) {
-  return static_cast<float>(pixel >> 16 & 255);
+// Byte k of a pixel as a number.
+template <int k>
+float Byte(uint32_t pixel) {
+  return static_cast<float>(pixel >> 8 * k & 255);
 }
 
+// The first byte is the lowest: all processors that facet runs on are little
+// endian.
 inline uint32_t FourBytes(const uint8_t* p) {
-  return p[0] | static_cast<uint32_t>(p[1]) << 8 |
-         static_cast<uint32_t>(p[2]) << 16 | static_cast<uint32_t>(p[3]) << 24;
+  uint32_t bytes;
+  __builtin_memcpy(&bytes, p, sizeof(bytes));
+  return bytes;
 }
 
 void SampleRgb(const PhotoFrame& frame,
@@ -119,6 +119,7 @@ void SampleRgb(const PhotoFrame& frame,
   const float max_v = static_cast<float>(frame.height - 1);
   const float max_x = static_cast<float>(frame.width - 2);
   const float max_y = static_cast<float>(frame.height - 2);
+  const int stride = static_cast<int>(row_bytes);
   PhotoCounts counts;
   Chunk c;
   Lane a, b, red, green, blue;
@@ -127,37 +128,38 @@ void SampleRgb(const PhotoFrame& frame,
     const int m = ChunkSize(n - begin);
     Load(texels, ids + begin, m, &c);
     Project(frame, &c, &counts);
-    if (frame.warp) WarpAnywhere(frame, &c);
+    if (frame.warp) WarpAnywhere<false>(frame, &c);
     const int lanes = LanesOf(c);
-    alignas(64) int x[kLanes], y[kLanes];
+    alignas(64) int offset[kLanes];
     for (int i = 0; i < lanes; ++i) {
       const float u = c.u.v[i], v = c.v.v[i];
       const float uc = u > 0 ? (u < max_u ? u : max_u) : 0.0f;
       const float vc = v > 0 ? (v < max_v ? v : max_v) : 0.0f;
-      x[i] = static_cast<int>(uc < max_x ? uc : max_x);
-      y[i] = static_cast<int>(vc < max_y ? vc : max_y);
-      a.v[i] = uc - static_cast<float>(x[i]);
-      b.v[i] = vc - static_cast<float>(y[i]);
+      const int x = static_cast<int>(uc < max_x ? uc : max_x);
+      const int y = static_cast<int>(vc < max_y ? vc : max_y);
+      offset[i] = y * stride + 3 * x;
+      a.v[i] = uc - static_cast<float>(x);
+      b.v[i] = vc - static_cast<float>(y);
     }
     // The right pixel with the byte before it, so that nothing behind the image
     // is read.
     for (int i = 0; i < lanes; ++i) {
-      const uint8_t* at = rgb + y[i] * row_bytes + 3 * x[i];
+      const uint8_t* at = rgb + offset[i];
       p00[i] = FourBytes(at);
-      p10[i] = FourBytes(at + 2) >> 8;
-      p01[i] = FourBytes(at + row_bytes);
-      p11[i] = FourBytes(at + row_bytes + 2) >> 8;
+      p10[i] = FourBytes(at + 2);
+      p01[i] = FourBytes(at + stride);
+      p11[i] = FourBytes(at + stride + 2);
     }
     for (int i = 0; i < lanes; ++i) {
       const float w00 = (1 - a.v[i]) * (1 - b.v[i]);
       const float w10 = a.v[i] * (1 - b.v[i]);
       const float w01 = (1 - a.v[i]) * b.v[i], w11 = a.v[i] * b.v[i];
-      red.v[i] = w00 * Red(p00[i]) + w10 * Red(p10[i]) + w01 * Red(p01[i]) +
-                 w11 * Red(p11[i]);
-      green.v[i] = w00 * Green(p00[i]) + w10 * Green(p10[i]) +
-                   w01 * Green(p01[i]) + w11 * Green(p11[i]);
-      blue.v[i] = w00 * Blue(p00[i]) + w10 * Blue(p10[i]) + w01 * Blue(p01[i]) +
-                  w11 * Blue(p11[i]);
+      red.v[i] = w00 * Byte<0>(p00[i]) + w10 * Byte<1>(p10[i]) +
+                 w01 * Byte<0>(p01[i]) + w11 * Byte<1>(p11[i]);
+      green.v[i] = w00 * Byte<1>(p00[i]) + w10 * Byte<2>(p10[i]) +
+                   w01 * Byte<1>(p01[i]) + w11 * Byte<2>(p11[i]);
+      blue.v[i] = w00 * Byte<2>(p00[i]) + w10 * Byte<3>(p10[i]) +
+                  w01 * Byte<2>(p01[i]) + w11 * Byte<3>(p11[i]);
     }
     for (int i = 0; i < m; ++i) {
       out.u[begin + i] = c.u.v[i];
@@ -299,7 +301,7 @@ double PlaneSegment(const PhotoFrame& frame,
     Load(texels, ids + begin, m, &c);
     ProjectOntoPlane(plane, anchor, &c, &s, &ax, &ay, &az);
     Project(frame, &c, counts);
-    if (frame.warp) WarpAnywhere(frame, &c);
+    if (frame.warp) WarpAnywhere<true>(frame, &c);
     SampleImage(frame, &c, counts);
     Residuals(c, &columns[4]);
     cost += static_cast<double>(CostOf(frame, &columns[4], &c));

@@ -115,7 +115,8 @@ inline void WarpInCell(const PhotoFrame& f,
   }
 }
 
-// The same with every point in the cell it falls into.
+// The same with every point in the cell it falls into; D only if asked for.
+template <bool kWithDerivative>
 inline void WarpAnywhere(const PhotoFrame& f, Chunk* c) {
   const int last_a = f.columns - 2, last_b = f.rows - 2;
   const float max_a = static_cast<float>(last_a);
@@ -134,14 +135,16 @@ inline void WarpAnywhere(const PhotoFrame& f, Chunk* c) {
     const float f10x = f.warp[k + 2], f10y = f.warp[k + 3];
     const float f01x = f.warp[k + down], f01y = f.warp[k + down + 1];
     const float f11x = f.warp[k + down + 2], f11y = f.warp[k + down + 3];
-    c->dxx.v[i] = 1 + ((f10x - f00x) * (1 - be) + (f11x - f01x) * be) *
-                          f.inverse_cell_width;
-    c->dyx.v[i] =
-        ((f10y - f00y) * (1 - be) + (f11y - f01y) * be) * f.inverse_cell_width;
-    c->dxy.v[i] =
-        ((f01x - f00x) * (1 - al) + (f11x - f10x) * al) * f.inverse_cell_height;
-    c->dyy.v[i] = 1 + ((f01y - f00y) * (1 - al) + (f11y - f10y) * al) *
-                          f.inverse_cell_height;
+    if (kWithDerivative) {
+      c->dxx.v[i] = 1 + ((f10x - f00x) * (1 - be) + (f11x - f01x) * be) *
+                            f.inverse_cell_width;
+      c->dyx.v[i] = ((f10y - f00y) * (1 - be) + (f11y - f01y) * be) *
+                    f.inverse_cell_width;
+      c->dxy.v[i] = ((f01x - f00x) * (1 - al) + (f11x - f10x) * al) *
+                    f.inverse_cell_height;
+      c->dyy.v[i] = 1 + ((f01y - f00y) * (1 - al) + (f11y - f10y) * al) *
+                            f.inverse_cell_height;
+    }
     const float w00 = (1 - al) * (1 - be), w10 = al * (1 - be);
     const float w01 = (1 - al) * be, w11 = al * be;
     c->u.v[i] += w00 * f00x + w10 * f10x + w01 * f01x + w11 * f11x;

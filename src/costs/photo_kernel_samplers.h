@@ -8,7 +8,8 @@
 namespace facet {
 namespace FACET_KERNEL_NAMESPACE {
 
-// Bilinear value and its exact gradient, clamped to the image.
+// Bilinear value and, if asked for, its exact gradient, clamped to the image.
+template <bool kWithGradient>
 inline void SampleBilinear(const PhotoFrame& f, Chunk* c, PhotoCounts* counts) {
   const float max_u = static_cast<float>(f.width - 1);
   const float max_v = static_cast<float>(f.height - 1);
@@ -46,8 +47,10 @@ inline void SampleBilinear(const PhotoFrame& f, Chunk* c, PhotoCounts* counts) {
     const float i01 = image[k + stride], i11 = image[k + stride + 1];
     const float top = i00 + a * (i10 - i00), bottom = i01 + a * (i11 - i01);
     c->value.v[i] = top + b * (bottom - top);
-    c->ix.v[i] = in_u * ((i10 - i00) + b * ((i11 - i01) - (i10 - i00)));
-    c->iy.v[i] = in_v * (bottom - top);
+    if (kWithGradient) {
+      c->ix.v[i] = in_u * ((i10 - i00) + b * ((i11 - i01) - (i10 - i00)));
+      c->iy.v[i] = in_v * (bottom - top);
+    }
   }
   counts->clamped += static_cast<size_t>(clamped);
 }
@@ -56,7 +59,7 @@ inline void SampleBilinear(const PhotoFrame& f, Chunk* c, PhotoCounts* counts) {
 __attribute__((noinline)) void SampleScharr(const PhotoFrame& f,
                                             Chunk* c,
                                             PhotoCounts* counts) {
-  SampleBilinear(f, c, counts);
+  SampleBilinear<false>(f, c, counts);
   const float max_u = static_cast<float>(f.width - 1);
   const float max_v = static_cast<float>(f.height - 1);
   const float max_x = static_cast<float>(f.width - 2);
@@ -161,7 +164,7 @@ __attribute__((noinline)) void DropOutside(const PhotoFrame& f,
 // as if it were alone.
 inline void SampleImage(const PhotoFrame& f, Chunk* c, PhotoCounts* counts) {
   if (f.sampling == Sampling::kBilinear) {
-    SampleBilinear(f, c, counts);
+    SampleBilinear<true>(f, c, counts);
   } else if (f.sampling == Sampling::kScharr) {
     SampleScharr(f, c, counts);
   } else {
