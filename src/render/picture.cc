@@ -17,25 +17,29 @@ using Eigen::Vector3f;
 // How many culled faces a ray may pass before it counts as background.
 constexpr int kMaxCulled = 64;
 
-Vector3d RayDirection(const SampledView& sampled, int x, int y) {
-  const double s = 1.0 / sampled.supersampling;
-  return sampled.view.camera.Unproject((x + 0.5) * s - 0.5,
-                                       (y + 0.5) * s - 0.5);
+// Of the finer raster of samples.
+Pinhole SampleCamera(const PreviewView& view, int supersampling) {
+  Pinhole camera = view.camera;
+  camera.fx *= supersampling;
+  camera.fy *= supersampling;
+  camera.cx = (camera.cx + 0.5) * supersampling - 0.5;
+  camera.cy = (camera.cy + 0.5) * supersampling - 0.5;
+  camera.width *= supersampling;
+  camera.height *= supersampling;
+  return camera;
 }
 
-RayHit FirstHit(const RayScene& scene,
-                const TriMesh& mesh,
-                const Vector3d& origin,
-                const Vector3d& direction,
-                bool cull_back_faces) {
-  double t_min = 0;
+// The first face behind `t` that is not seen from behind.
+RayHit FirstFrontHit(const RayScene& scene,
+                     const TriMesh& mesh,
+                     const Vector3d& origin,
+                     const Vector3d& direction,
+                     double t) {
   for (int i = 0; i < kMaxCulled; ++i) {
-    const RayHit hit = scene.Intersect(origin, direction, t_min);
-    if (hit.face < 0 || !cull_back_faces ||
-        mesh.FaceCross(hit.face).dot(direction) < 0) {
-      return hit;
-    }
-    t_min = hit.t * (1 + 1e-6) + 1e-6;
+    const RayHit hit =
+        scene.Intersect(origin, direction, t * (1 + 1e-6) + 1e-6);
+    if (hit.face < 0 || mesh.FaceCross(hit.face).dot(direction) < 0) return hit;
+    t = hit.t;
   }
   return RayHit();
 }
@@ -48,43 +52,39 @@ class SampleShader {
                const DrawOptions& options)
       : mesh_(mesh), options_(options) {
     const Pose world_from_cam = sampled.view.cam_from_world.Inverse();
-    center_ = world_from_cam.translation;
-    focal_ = 0.5 * (sampled.view.camera.fx + sampled.view.camera.fy);
+    const double focal =
+        0.5 * (sampled.view.camera.fx + sampled.view.camera.fy);
     // Over the left shoulder of the camera: reveals relief that a lamp in the
     // camera itself would flatten.
     key_light_ =
-        world_from_cam.rotation * Vector3d(-0.5, -0.6, -0.62).normalized();
+        (world_from_cam.rotation * Vector3d(-0.5, -0.6, -0.62).normalized())
+            .cast<float>();
     if (options.shade && options.smooth_normals) SumNormals();
+    if (options.shade && !options.smooth_normals) FindFaceNormals();
+    if (options.wireframe_px > 0) {
+      FindEdges(world_from_cam.translation, focal);
+    }
   }
 
   // Light on the surface, in [0, 1].
-  float Light(int face, double u, double v, const Vector3d& ray) const {
-    Vector3d normal = Normal(face, u, v);
+  float Light(int face, float u, float v, const Vector3f& ray) const {
+    Vector3f normal =
+        face_normals_.empty() ? SmoothNormal(face, u, v) : face_normals_[face];
     if (normal.dot(ray) > 0) normal = -normal;
-    const double head = std::max(0.0, -normal.dot(ray));
-    const double key = std::max(0.0, normal.dot(key_light_));
-    return static_cast<float>(0.26 + 0.46 * head + 0.34 * key);
+    const float head = std::max(0.0f, -normal.dot(ray));
+    const float key = std::max(0.0f, normal.dot(key_light_));
+    return 0.26f + 0.46f * head + 0.34f * key;
   }
 
   // 1 on an edge of the face, 0 from half a line width (+ 1/2 px) on.
-  float Edge(int face, const Vector3d& ray) const {
-    double nearest = 1e30;
-    for (int k = 0; k < 3; ++k) {
-      const Vector3d a = Vertex(face, k) - center_;
-      const Vector3d b = Vertex(face, (k + 1) % 3) - center_;
-      const Vector3d m = a.cross(b);
-      const double norm = m.norm();
-      if (norm > 0) nearest = std::min(nearest, std::abs(m.dot(ray)) / norm);
-    }
-    const double px = nearest * focal_ - 0.5 * options_.wireframe_px;
-    return static_cast<float>(std::clamp(0.5 - px, 0.0, 1.0));
+  float Edge(int face, const Vector3f& ray) const {
+    const Eigen::Matrix3f& edges = edges_[face];
+    const float nearest = (edges * ray).cwiseAbs().minCoeff();
+    const float px = nearest - 0.5f * static_cast<float>(options_.wireframe_px);
+    return std::clamp(0.5f - px, 0.0f, 1.0f);
   }
 
  private:
-  const Vector3d& Vertex(int face, int k) const {
-    return mesh_.vertices[mesh_.faces[face][k]];
-  }
-
   void SumNormals() {
     vertex_normals_.assign(mesh_.NumVertices(), Vector3f::Zero());
     for (size_t f = 0; f < mesh_.NumFaces(); ++f) {
@@ -94,20 +94,42 @@ class SampleShader {
     for (auto& n : vertex_normals_) n.normalize();
   }
 
-  Vector3d Normal(int face, double u, double v) const {
-    if (vertex_normals_.empty()) return mesh_.FaceCross(face).normalized();
+  void FindFaceNormals() {
+    face_normals_.resize(mesh_.NumFaces());
+    for (size_t f = 0; f < mesh_.NumFaces(); ++f) {
+      face_normals_[f] = mesh_.FaceCross(f).normalized().cast<float>();
+    }
+  }
+
+  // Rows: the normals of the planes through the camera and an edge, times the
+  // focal length.
+  void FindEdges(const Vector3d& center, double focal) {
+    edges_.resize(mesh_.NumFaces());
+    for (size_t f = 0; f < mesh_.NumFaces(); ++f) {
+      for (int k = 0; k < 3; ++k) {
+        const Vector3d a = mesh_.vertices[mesh_.faces[f][k]] - center;
+        const Vector3d b = mesh_.vertices[mesh_.faces[f][(k + 1) % 3]] - center;
+        Vector3d m = a.cross(b);
+        const double norm = m.norm();
+        // An edge that points at the camera is a point: no line.
+        m = norm > 0 ? Vector3d(m * (focal / norm)) : Vector3d::Constant(1e30);
+        edges_[f].row(k) = m.cast<float>();
+      }
+    }
+  }
+
+  Vector3f SmoothNormal(int face, float u, float v) const {
     const auto& f = mesh_.faces[face];
-    const Vector3f n = static_cast<float>(1 - u - v) * vertex_normals_[f[0]] +
-                       static_cast<float>(u) * vertex_normals_[f[1]] +
-                       static_cast<float>(v) * vertex_normals_[f[2]];
-    return n.cast<double>().normalized();
+    return ((1 - u - v) * vertex_normals_[f[0]] + u * vertex_normals_[f[1]] +
+            v * vertex_normals_[f[2]])
+        .normalized();
   }
 
   const TriMesh& mesh_;
   const DrawOptions& options_;
-  Vector3d center_, key_light_;
-  double focal_ = 0;
-  std::vector<Vector3f> vertex_normals_;
+  Vector3f key_light_;
+  std::vector<Vector3f> vertex_normals_, face_normals_;
+  std::vector<Eigen::Matrix3f> edges_;
 };
 
 uint8_t ToByte(float x) {
@@ -120,36 +142,32 @@ SampledView SampleView(const RayScene& scene,
                        const TriMesh& mesh,
                        const PreviewView& view,
                        int supersampling) {
+  const Pinhole camera = SampleCamera(view, supersampling);
+  DepthRender first = RenderDepth(scene, camera, view.cam_from_world);
+  if (view.cull_back_faces) {
+    const Pose world_from_cam = view.cam_from_world.Inverse();
+    const Eigen::Matrix3d rotation = world_from_cam.RotationMatrix();
+    ParallelFor(0, camera.height, [&](size_t y) {
+      for (int x = 0; x < camera.width; ++x) {
+        const size_t i = y * camera.width + x;
+        if (first.face[i] < 0) continue;
+        const Vector3d direction =
+            rotation * camera.Unproject(x, static_cast<double>(y));
+        if (mesh.FaceCross(first.face[i]).dot(direction) < 0) continue;
+        const RayHit hit = FirstFrontHit(
+            scene, mesh, world_from_cam.translation, direction, first.depth[i]);
+        first.face[i] = hit.face;
+        first.u[i] = static_cast<float>(hit.u);
+        first.v[i] = static_cast<float>(hit.v);
+      }
+    });
+  }
   SampledView sampled;
   sampled.view = view;
   sampled.supersampling = supersampling;
-  const int width = view.camera.width * supersampling;
-  const int height = view.camera.height * supersampling;
-  const size_t size = static_cast<size_t>(width) * height;
-  sampled.face.assign(size, -1);
-  sampled.u.assign(size, 0);
-  sampled.v.assign(size, 0);
-  const Pose world_from_cam = view.cam_from_world.Inverse();
-  const Eigen::Matrix3d rotation = world_from_cam.RotationMatrix();
-  ParallelFor(
-      0,
-      height,
-      [&](size_t y) {
-        for (int x = 0; x < width; ++x) {
-          const Vector3d direction =
-              rotation * RayDirection(sampled, x, static_cast<int>(y));
-          const RayHit hit = FirstHit(scene,
-                                      mesh,
-                                      world_from_cam.translation,
-                                      direction,
-                                      view.cull_back_faces);
-          const size_t i = y * width + x;
-          sampled.face[i] = hit.face;
-          sampled.u[i] = static_cast<float>(hit.u);
-          sampled.v[i] = static_cast<float>(hit.v);
-        }
-      },
-      4);
+  sampled.face = std::move(first.face);
+  sampled.u = std::move(first.u);
+  sampled.v = std::move(first.v);
   return sampled;
 }
 
@@ -183,26 +201,29 @@ Picture DrawView(const SampledView& sampled,
                  const SurfaceColor& color,
                  const DrawOptions& options) {
   const SampleShader shader(sampled, mesh, options);
+  const bool needs_ray = options.shade || options.wireframe_px > 0;
   const Eigen::Matrix3d world_from_cam =
       sampled.view.cam_from_world.Inverse().RotationMatrix();
   const int s = sampled.supersampling;
+  const Pinhole camera = SampleCamera(sampled.view, s);
   Picture picture;
   picture.width = sampled.view.camera.width;
   picture.height = sampled.view.camera.height;
   picture.rgb.resize(3 * static_cast<size_t>(picture.width) * picture.height);
 
   const auto sample_color = [&](int x, int y) -> Vector3f {
-    const size_t i = static_cast<size_t>(y) * picture.width * s + x;
+    const size_t i = static_cast<size_t>(y) * camera.width + x;
     const int face = sampled.face[i];
     if (face < 0) {
-      const float down = (y + 0.5f) / (picture.height * s);
+      const float down = (y + 0.5f) / camera.height;
       return (1 - down) * options.background_top +
              down * options.background_bottom;
     }
-    const Vector3d ray =
-        (world_from_cam * RayDirection(sampled, x, y)).normalized();
-    const double u = sampled.u[i], v = sampled.v[i];
+    const float u = sampled.u[i], v = sampled.v[i];
     Vector3f rgb = color(face, u, v);
+    if (!needs_ray) return rgb;
+    const Vector3f ray =
+        (world_from_cam * camera.Unproject(x, y)).cast<float>().normalized();
     if (options.shade) rgb *= shader.Light(face, u, v, ray);
     if (options.wireframe_px > 0) {
       const float edge = shader.Edge(face, ray);
