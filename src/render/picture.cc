@@ -176,10 +176,16 @@ SurfaceColor UniformColor(const Vector3f& rgb) {
 }
 
 SurfaceColor PlaneColors(const std::vector<int>& face_plane) {
-  return [face_plane](int face, double, double) -> Vector3f {
-    if (face_plane[face] < 0) return Vector3f::Constant(0.7f);
-    const Rgb rgb = PlaneColor(face_plane[face]);
-    return Vector3f(rgb[0], rgb[1], rgb[2]) / 255.0f;
+  std::vector<Vector3f> colors;  // by plane
+  for (const int plane : face_plane) {
+    while (static_cast<int>(colors.size()) <= plane) {
+      const Rgb rgb = PlaneColor(static_cast<int>(colors.size()));
+      colors.push_back(Vector3f(rgb[0], rgb[1], rgb[2]) / 255.0f);
+    }
+  }
+  return [face_plane, colors = std::move(colors)](int face, double, double) {
+    const int plane = face_plane[face];
+    return plane < 0 ? Vector3f(Vector3f::Constant(0.7f)) : colors[plane];
   };
 }
 

@@ -35,8 +35,9 @@ cv::Mat SurfaceEdgeMask(const cv::Mat& depth,
 
 // Standard deviation of the axial noise of a structured-light sensor at depth
 // z [m], in metres (Nguyen et al. 2012): 0.0012 + 0.0019 (z - 0.4)^2.
-inline double DepthSigma(double z) {
-  return 0.0012 + 0.0019 * (z - 0.4) * (z - 0.4);
+template <typename T>
+T DepthSigma(T z) {
+  return T(0.0012) + T(0.0019) * (z - T(0.4)) * (z - T(0.4));
 }
 
 // The depth as the colour camera would measure it: CV_32F of the size of

@@ -16,7 +16,7 @@ namespace {
 using Eigen::Vector3f;
 
 // Consecutive texels of one plane that are refused together if possible.
-constexpr size_t kBlockTexels = 64;
+constexpr size_t kBlockTexels = SightBatch::kCapacity;
 
 struct TexelBlock {
   size_t begin = 0, end = 0;
@@ -28,23 +28,9 @@ struct FrameResult {
   std::array<size_t, kNumSights> sights = {};
 };
 
-std::vector<Vector3f> PlanePoints(const TexelSet& texels,
-                                  const std::vector<Plane>& planes) {
-  std::vector<Vector3f> points(texels.size());
-  ParallelFor(
-      0,
-      texels.size(),
-      [&](size_t i) {
-        const Plane& plane = planes[texels.plane[i]];
-        points[i] =
-            plane.Project(texels.position[i].cast<double>()).cast<float>();
-      },
-      4096);
-  return points;
-}
-
 std::vector<TexelBlock> MakeBlocks(const TexelSet& texels,
-                                   const std::vector<Vector3f>& points) {
+                                   const std::vector<Plane>& planes,
+                                   SightPoints* points) {
   std::vector<TexelBlock> blocks;
   for (size_t begin = 0; begin < texels.size();) {
     size_t end = begin + 1;
@@ -52,10 +38,24 @@ std::vector<TexelBlock> MakeBlocks(const TexelSet& texels,
            texels.plane[end] == texels.plane[begin]) {
       ++end;
     }
-    blocks.push_back(
-        {begin, end, BallAround(points.data() + begin, end - begin)});
+    blocks.push_back({begin, end, Ball()});
     begin = end;
   }
+  ParallelFor(
+      0,
+      blocks.size(),
+      [&](size_t b) {
+        TexelBlock& block = blocks[b];
+        const Plane& plane = planes[texels.plane[block.begin]];
+        std::vector<Vector3f> q;
+        for (size_t i = block.begin; i < block.end; ++i) {
+          const Vector3f& p = texels.position[i];
+          q.push_back(plane.Project(p.cast<double>()).cast<float>());
+          points->Set(i, p, q.back());
+        }
+        block.ball = BallAround(q.data(), q.size());
+      },
+      64);
   return blocks;
 }
 
@@ -63,13 +63,12 @@ std::vector<TexelBlock> MakeBlocks(const TexelSet& texels,
 class Candidates {
  public:
   Candidates(const TexelSet& texels, const std::vector<Plane>& planes)
-      : texels_(texels), planes_(planes) {
+      : texels_(texels), planes_(planes), points_(texels.size()) {
     if (texels.size() > std::numeric_limits<uint32_t>::max()) {
       throw UnsolvableError(
           "more than 4 billion texels; raise the texel size or the stride");
     }
-    points_ = PlanePoints(texels, planes);
-    blocks_ = MakeBlocks(texels, points_);
+    blocks_ = MakeBlocks(texels, planes, &points_);
   }
 
   FrameResult SeenFrom(const FrameView& view) const {
@@ -82,11 +81,12 @@ class Candidates {
       }
       const Vector3f normal =
           planes_[texels_.plane[block.begin]].normal.cast<float>();
-      for (size_t i = block.begin; i < block.end; ++i) {
-        const Sight sight = view.Test(texels_.position[i], points_[i], normal);
-        ++result.sights[static_cast<int>(sight)];
-        if (sight == Sight::kVisible) {
-          result.texel.push_back(static_cast<uint32_t>(i));
+      SightBatch batch = points_.Batch(block.begin, block.end, normal);
+      view.Test(&batch);
+      for (int i = 0; i < batch.size; ++i) {
+        ++result.sights[static_cast<int>(batch.sight[i])];
+        if (batch.sight[i] == Sight::kVisible) {
+          result.texel.push_back(static_cast<uint32_t>(block.begin) + i);
         }
       }
     }
@@ -96,7 +96,7 @@ class Candidates {
  private:
   const TexelSet& texels_;
   const std::vector<Plane>& planes_;
-  std::vector<Vector3f> points_;
+  SightPoints points_;
   std::vector<TexelBlock> blocks_;
 };
 

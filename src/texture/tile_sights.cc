@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "texture/tile_sights.h"
 
+#include <algorithm>
+
 #include "texture/visibility.h"
 #include "util/parallel_for.h"
 
@@ -25,11 +27,20 @@ class Looker {
         texels_(texels),
         options_(options),
         mild_(mild),
+        first_(FirstSources(texels)),
+        points_(first_.back()),
+        bit_(first_.back()),
         balls_(texels.tiles.size()) {
     ParallelFor(0, texels.tiles.size(), [this](size_t t) {
       const BakeTile& tile = texels_.tiles[t];
       balls_[t] = BallAround(texels_.q.data() + tile.begin,
                              tile.owned_end - tile.begin);
+      size_t n = first_[t];
+      for (uint32_t i = tile.begin; i < tile.owned_end; ++i) {
+        if (texels_.source[i] != i) continue;
+        points_.Set(n, texels_.p[i], texels_.q[i]);
+        bit_[n++] = i - tile.begin;
+      }
     });
   }
 
@@ -44,29 +55,52 @@ class Looker {
   }
 
   // Sets the bits of a tile. Returns whether there are any.
-  bool Look(const FrameView& view,
-            const BakeTile& tile,
-            uint64_t* words) const {
-    const size_t num_words = TileSights::NumWords(tile);
+  bool Look(const FrameView& view, size_t t, uint64_t* words) const {
+    const BakeTile& tile = texels_.tiles[t];
     const Chart& chart = atlas_.charts[tile.chart];
-    Vector3f normal = NormalOf(chart, tile.begin);
+    // On a steep chart every face has its own normal.
+    const size_t most = chart.steep ? 1 : SightBatch::kCapacity;
     bool any = false;
-    for (uint32_t i = tile.begin; i < tile.owned_end; ++i) {
-      if (texels_.source[i] != i) continue;
-      if (chart.steep) normal = NormalOf(chart, i);
-      bool may_see = false;
-      const Sight sight = view.Test(
-          texels_.p[i], texels_.q[i], normal, mild_ ? &may_see : nullptr);
-      if (sight != Sight::kVisible && !may_see) continue;
-      const size_t bit = i - tile.begin;
-      words[bit / 64 + (sight == Sight::kVisible ? 0 : num_words)] |=
-          uint64_t{1} << (bit % 64);
-      any = true;
+    for (size_t begin = first_[t]; begin < first_[t + 1]; begin += most) {
+      SightBatch batch =
+          points_.Batch(begin,
+                        std::min(begin + most, first_[t + 1]),
+                        NormalOf(chart, tile.begin + bit_[begin]));
+      view.Test(&batch);
+      any |= SetBits(batch, begin, TileSights::NumWords(tile), words);
     }
     return any;
   }
 
  private:
+  // By tile: how many tested texels are in those before; and all.
+  static std::vector<size_t> FirstSources(const BakeTexels& texels) {
+    std::vector<size_t> first = {0};
+    for (const BakeTile& tile : texels.tiles) {
+      size_t count = 0;
+      for (uint32_t i = tile.begin; i < tile.owned_end; ++i) {
+        count += texels.source[i] == i;
+      }
+      first.push_back(first.back() + count);
+    }
+    return first;
+  }
+
+  bool SetBits(const SightBatch& batch,
+               size_t begin,
+               size_t num_words,
+               uint64_t* words) const {
+    bool any = false;
+    for (int i = 0; i < batch.size; ++i) {
+      const bool visible = batch.sight[i] == Sight::kVisible;
+      if (!visible && !(mild_ && batch.may_see[i])) continue;
+      const uint32_t bit = bit_[begin + i];
+      words[bit / 64 + (visible ? 0 : num_words)] |= uint64_t{1} << (bit % 64);
+      any = true;
+    }
+    return any;
+  }
+
   Vector3f NormalOf(const Chart& chart, size_t texel) const {
     return TexelNormal(mesh_, planes_, chart, texels_, texel);
   }
@@ -77,6 +111,11 @@ class Looker {
   const BakeTexels& texels_;
   const VisibilityOptions& options_;
   const bool mild_;
+  // The texels that are tested, tile by tile from first_ on: their points, and
+  // their places in the tile.
+  std::vector<size_t> first_;
+  SightPoints points_;
+  std::vector<uint32_t> bit_;
   std::vector<Ball> balls_;  // by tile
 };
 
@@ -120,7 +159,7 @@ TileSights::TileSights(const TriMesh& mesh,
       if (!looker.MaySee(view, t)) continue;
       const size_t first_word = bits.words.size();
       bits.words.resize(first_word + 2 * NumWords(texels.tiles[t]), 0);
-      if (looker.Look(view, texels.tiles[t], bits.words.data() + first_word)) {
+      if (looker.Look(view, t, bits.words.data() + first_word)) {
         bits.tile.push_back(static_cast<uint32_t>(t));
         bits.first_word.push_back(static_cast<uint32_t>(first_word));
       } else {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/texture/memory_sequence.h"
@@ -259,11 +260,9 @@ TEST(Observations, DepthRangeAndMinViews) {
             s.counts.candidates);
 }
 
-// Breaks if a part of the frozen set is left out of the hash: runs on different
-// observations would then be compared.
 // The milder verdict forgives what the sensor did not see, not what hides a
-// point. Breaks if asking for it changes the strict verdict, if missing depth
-// hides a point, or if the square before the wall does not.
+// point. Breaks if a verdict depends on the points that are tested with it, if
+// missing depth hides a point, or if the square before the wall does not.
 TEST(FrameView, MildVerdictForgivesMissingDepthOnly) {
   Scene s;
   VisibilityOptions options;
@@ -274,16 +273,26 @@ TEST(FrameView, MildVerdictForgivesMissingDepthOnly) {
   const RayScene rays(s.scene.mesh);
   const FrameView view(
       s.sequence.calibration(), s.sequence.AllPoses()[0], depth, rays, options);
+  SightPoints points(s.texels.size());
+  for (size_t i = 0; i < s.texels.size(); ++i) {
+    points.Set(i, s.texels.position[i], s.texels.position[i]);
+  }
   int seen[kNumSights] = {}, mild[kNumSights] = {};
   for (size_t i = 0; i < s.texels.size(); ++i) {
-    const Eigen::Vector3f& p = s.texels.position[i];
-    const Eigen::Vector3f normal(0, 0, -1);
-    bool may_see = false;
-    const Sight sight = view.Test(p, p, normal, &may_see);
-    ASSERT_EQ(sight, view.Test(p, p, normal));
+    const size_t begin = i / 7 * 7;
+    SightBatch batch =
+        points.Batch(begin, std::min(begin + 7, s.texels.size()), {0, 0, -1});
+    SightBatch alone = points.Batch(i, i + 1, {0, 0, -1});
+    view.Test(&batch);
+    view.Test(&alone);
+    const Sight sight = alone.sight[0];
+    const bool may_see = alone.may_see[0];
+    ASSERT_EQ(sight, batch.sight[i - begin]);
+    ASSERT_EQ(may_see, batch.may_see[i - begin]);
     ++seen[static_cast<int>(sight)];
     mild[static_cast<int>(sight)] += may_see;
     // Behind the square as seen from the origin, well inside its shadow.
+    const Eigen::Vector3f& p = s.texels.position[i];
     const bool hidden =
         p.z() > 1.5f && std::abs(p.x()) < 0.15f && std::abs(p.y()) < 0.15f;
     if (hidden) {
@@ -299,12 +308,16 @@ TEST(FrameView, MildVerdictForgivesMissingDepthOnly) {
   EXPECT_GT(mild[at(Sight::kDepthMissing)],
             seen[at(Sight::kDepthMissing)] * 3 / 4);
   // The same point from behind.
-  bool may_see = true;
-  const Eigen::Vector3f p(0.5f, 0, 2);
-  EXPECT_EQ(view.Test(p, p, {0, 0, 1}, &may_see), Sight::kGrazing);
-  EXPECT_FALSE(may_see);
+  SightPoints point(1);
+  point.Set(0, {0.5f, 0, 2}, {0.5f, 0, 2});
+  SightBatch batch = point.Batch(0, 1, {0, 0, 1});
+  view.Test(&batch);
+  EXPECT_EQ(batch.sight[0], Sight::kGrazing);
+  EXPECT_FALSE(batch.may_see[0]);
 }
 
+// Breaks if a part of the frozen set is left out of the hash: runs on different
+// observations would then be compared.
 TEST(Observations, FingerprintSeesEveryChange) {
   Scene s;
   const Observations o = s.Compute(s.off);
