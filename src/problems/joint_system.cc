@@ -3,6 +3,7 @@
 #include "problems/joint_system.h"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 
 #include "costs/plane_manifold.h"
 #include "util/parallel_for.h"
@@ -14,6 +15,7 @@ namespace {
 // common part has been subtracted.
 constexpr double kJointShift = 1e-5;
 constexpr double kAbsoluteShift = 1e-12;
+constexpr Eigen::Index kBlock = 60;  // rows that are factored together
 
 template <typename Matrix>
 void ShiftDiagonal(Matrix* h) {
@@ -46,6 +48,35 @@ void SubtractPlanes(const JointSystem& system,
   });
 }
 
+// R of R^T R = A in place of A, both by their upper triangles, block row by
+// block row; the blocks of a row on all threads. False if A is not positive.
+bool FactorInPlace(Eigen::MatrixXd* a) {
+  const Eigen::Index n = a->rows();
+  const auto size = [n](Eigen::Index begin) {
+    return std::min(kBlock, n - begin);
+  };
+  for (Eigen::Index k = 0; k < n; k += kBlock) {
+    auto corner = a->block(k, k, size(k), size(k));
+    const Eigen::LLT<Eigen::MatrixXd, Eigen::Upper> llt(corner);
+    if (llt.info() != Eigen::Success) return false;
+    corner = llt.matrixU();
+    const size_t num_right = (n - k - 1) / kBlock;
+    ParallelFor(0, num_right, [&](size_t i) {
+      const Eigen::Index j = k + kBlock * (static_cast<Eigen::Index>(i) + 1);
+      auto panel = a->block(k, j, kBlock, size(j));
+      corner.transpose().triangularView<Eigen::Lower>().solveInPlace(panel);
+    });
+    ParallelFor(0, num_right, [&](size_t i) {
+      const Eigen::Index j = k + kBlock * (static_cast<Eigen::Index>(i) + 1);
+      const Eigen::Index below = j + size(j) - k - kBlock;
+      a->block(k + kBlock, j, below, size(j)).noalias() -=
+          a->block(k, k + kBlock, kBlock, below).transpose() *
+          a->block(k, j, kBlock, size(j));
+    });
+  }
+  return true;
+}
+
 // Upper Cholesky factor of a symmetric matrix given by its upper triangle;
 // raises the diagonal until it exists.
 Eigen::MatrixXd UpperFactor(const Eigen::MatrixXd& upper) {
@@ -53,8 +84,7 @@ Eigen::MatrixXd UpperFactor(const Eigen::MatrixXd& upper) {
   for (double shift = kJointShift;; shift *= 10) {
     Eigen::MatrixXd factor = upper;
     factor.diagonal() = diagonal;
-    const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>, Eigen::Upper> llt(factor);
-    if (llt.info() == Eigen::Success) {
+    if (FactorInPlace(&factor)) {
       factor.triangularView<Eigen::StrictlyLower>().setZero();
       return factor;
     }

@@ -50,7 +50,7 @@ struct SolverConfig {
   JointLinearSolver joint_linear_solver = JointLinearSolver::kCgnr;
   // Joint solve: kappa and eta of problems/joint_pass.h, and the largest
   // trust-region radius, which with the pose prior holds soft gauge directions.
-  int max_joint_iterations = 5;
+  int max_joint_iterations = 4;
   // The Hessian is built and factored anew at every so many points; the
   // gradient always is. >= 1.
   int joint_hessian_every = 3;
@@ -72,10 +72,11 @@ struct SolverConfig {
 };
 
 // Trust-region radii carried from one solve of a block to the next; sized on
-// first use.
+// first use. That of the joint solve starts small: its Hessian promises more
+// than there is, steps of a radius of 1e4 were refused three in five times.
 struct SolverMemory {
   std::vector<double> plane_radius, frame_radius;
-  double joint_radius = 1e4, explicit_radius = 1e4;
+  double joint_radius = 100, explicit_radius = 1e4;
 };
 
 struct PhaseSummary {
