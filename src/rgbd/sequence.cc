@@ -65,11 +65,16 @@ cv::Mat LumaFromRgb(const cv::Mat& rgb,
   const float base = (weights * offset).sum();
   const float r = weights[0] / 255 * gain[0], g = weights[1] / 255 * gain[1],
               b = weights[2] / 255 * gain[2];
+  // Apart, so that the loop can be vectorised.
+  cv::Mat channels[3];
+  cv::split(rgb, channels);
   for (int y = 0; y < rgb.rows; ++y) {
-    const uint8_t* in = rgb.ptr<uint8_t>(y);
+    const uint8_t* red = channels[0].ptr<uint8_t>(y);
+    const uint8_t* green = channels[1].ptr<uint8_t>(y);
+    const uint8_t* blue = channels[2].ptr<uint8_t>(y);
     float* out = luma.ptr<float>(y);
     for (int x = 0; x < rgb.cols; ++x) {
-      out[x] = r * in[3 * x] + g * in[3 * x + 1] + b * in[3 * x + 2] + base;
+      out[x] = r * red[x] + g * green[x] + b * blue[x] + base;
     }
   }
   return luma;
