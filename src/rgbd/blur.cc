@@ -10,6 +10,7 @@ namespace {
 
 constexpr int kRadius = 4;
 constexpr int kTaps = 2 * kRadius + 1;
+constexpr float kPerTap = 1.0f / kTaps;
 
 // Half-sample mirror: ... 1 0 | 0 1 2 ... n-1 | n-1 n-2 ...
 int Mirror(int i, int n) {
@@ -28,7 +29,7 @@ struct Sums {
   void Add(float here, float before, float ahead, float behind) {
     const float d_f = std::abs(here - before);
     sharp += d_f;
-    common += std::min(d_f, std::abs(ahead - behind) / kTaps);
+    common += std::min(d_f, std::abs(ahead - behind) * kPerTap);
   }
 
   // The same for `n` consecutive pixels. Lanes of their own let the compiler
@@ -44,7 +45,7 @@ struct Sums {
     for (; i + kLanes <= n; i += kLanes) {
       for (int k = 0; k < kLanes; ++k) {
         const float d_f = std::abs(here[i + k] - before[i + k]);
-        const float d_b = std::abs(ahead[i + k] - behind[i + k]) / kTaps;
+        const float d_b = std::abs(ahead[i + k] - behind[i + k]) * kPerTap;
         lane_sharp[k] += d_f;
         lane_common[k] += d_b < d_f ? d_b : d_f;
       }
