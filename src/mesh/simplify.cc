@@ -56,6 +56,13 @@ int CountBorderEdges(const TriMesh& mesh, const std::vector<int>& labels) {
 SimplifyResult SimplifyByPlanes(const TriMesh& mesh,
                                 const PlanarPartition& partition,
                                 const SimplifyOptions& options) {
+  return SimplifyInRegions(mesh, partition, options, kFacesPerRegion);
+}
+
+SimplifyResult SimplifyInRegions(const TriMesh& mesh,
+                                 const PlanarPartition& partition,
+                                 const SimplifyOptions& options,
+                                 int faces_per_region) {
   CheckOptions(options);
   SimplifyResult result;
   SimplifyReport& report = result.report;
@@ -66,7 +73,7 @@ SimplifyResult SimplifyByPlanes(const TriMesh& mesh,
     report.border_edges_before = CountBorderEdges(mesh, partition.face_cluster);
   });
 
-  Collapser collapser(mesh, partition, options);
+  Collapser collapser(mesh, partition, options, faces_per_region);
   if (options.stop == SimplifyStop::kCounts) {
     collapser.RunCounts();
   } else {

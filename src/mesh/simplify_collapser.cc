@@ -1,10 +1,9 @@
 // Copyright (c) 2026 The facet authors
 // SPDX-License-Identifier: MIT
 //
-// Which collapses are admissible, what they do, and in which order they come.
+// Which collapses are admissible and what they do.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "mesh/simplify_kernel.h"
 
@@ -164,26 +163,27 @@ double Collapser::Impl::ErrorOf(const Collapse& collapse) const {
                    (vertices[from].weight + vertices[to].weight));
 }
 
-// Adds `sign` to the counts of edges at both ends of h.
-void Collapser::Impl::CountRing(HalfedgeHandle h, int sign) {
+// Adds `sign` to the counts of edges for those at both ends of h.
+void Collapser::Impl::CountRing(HalfedgeHandle h, int sign, Counts* sum) {
   const VertexHandle from = kernel.from_vertex_handle(h);
   const VertexHandle to = kernel.to_vertex_handle(h);
   for (const VertexHandle v : {from, to}) {
     for (const EdgeHandle e : kernel.ve_range(v)) {
       if (v == to && e == kernel.edge_handle(h)) continue;
       const EdgeClass edge_class = ClassOf(e);
-      if (edge_class == kBorder) num_border += sign;
+      if (edge_class == kBorder) sum->border += sign;
       if (edge_class == kInner) cluster_inner[ClusterOf(e)] += sign;
     }
   }
 }
 
-void Collapser::Impl::Execute(const Collapse& collapse) {
+void Collapser::Impl::Execute(const Collapse& collapse, Counts* sum) {
   const HalfedgeHandle h = collapse.halfedge;
   const VertexHandle from = kernel.from_vertex_handle(h);
   const VertexHandle to = kernel.to_vertex_handle(h);
-  max_error = std::max(max_error, ErrorOf(collapse));
-  CountRing(h, -1);
+  sum->max_error = std::max(sum->max_error, ErrorOf(collapse));
+  const bool counts_edges = options.stop == SimplifyStop::kCounts;
+  if (counts_edges) CountRing(h, -1, sum);
 
   // The two other sides of a face that goes become one edge: a border if one of
   // them was.
@@ -197,10 +197,10 @@ void Collapser::Impl::Execute(const Collapse& collapse) {
                             border[kernel.edge_handle(next).idx()] ||
                                 border[kernel.edge_handle(prev).idx()]};
     --cluster_faces[label[kernel.face_handle(side).idx()]];
-    --num_faces;
+    --sum->faces;
   }
   kernel.collapse(h);
-  ++num_collapses;
+  ++sum->collapses;
   for (int i = 0; i < num_merged; ++i) {
     const EdgeHandle e =
         kernel.edge_handle(kernel.find_halfedge(to, merged[i].first));
@@ -213,88 +213,12 @@ void Collapser::Impl::Execute(const Collapse& collapse) {
   int degree = 0;
   for (const EdgeHandle e : kernel.ve_range(to)) degree += border[e.idx()];
   vertices[to.idx()].border_degree = degree;
+  if (!counts_edges) return;
   for (const EdgeHandle e : kernel.ve_range(to)) {
     const EdgeClass edge_class = ClassOf(e);
-    if (edge_class == kBorder) ++num_border;
+    if (edge_class == kBorder) ++sum->border;
     if (edge_class == kInner) ++cluster_inner[ClusterOf(e)];
   }
-}
-
-void Collapser::Impl::Push(EdgeHandle e) {
-  rejected[e.idx()] = 0;
-  attempt[e.idx()] = 0;
-  if (MayCollapse(e)) {
-    queue.Set(e.idx(), Plan(e, 0).cost);
-  } else {
-    queue.Remove(e.idx());
-  }
-}
-
-// After a collapse: the edges of the kept vertex have new costs, and edges
-// around it that were rejected may have become valid.
-void Collapser::Impl::Requeue(VertexHandle kept) {
-  for (auto it = kernel.cvoh_iter(kept); it.is_valid(); ++it) {
-    Push(kernel.edge_handle(*it));
-  }
-  for (auto it = kernel.cvoh_iter(kept); it.is_valid(); ++it) {
-    for (const EdgeHandle e : kernel.ve_range(kernel.to_vertex_handle(*it))) {
-      if (rejected[e.idx()]) Push(e);
-    }
-  }
-}
-
-void Collapser::Impl::Fill(int classes) {
-  active = classes;
-  queue = IndexedHeap(kernel.n_edges());
-  for (const EdgeHandle e : kernel.edges()) Push(e);  // skips deleted edges
-}
-
-// Collapses the cheapest valid candidate for which wanted(edge, plan) holds
-// until done() or the queue is empty. Attempts 0 to 3 of an edge are its
-// targets within the soft limits of shape, 4 to 7 the same within the hard
-// ones, where it waits at shape_penalty times its cost.
-template <typename Wanted, typename Done>
-void Collapser::Impl::Run(const Wanted& wanted, const Done& done) {
-  while (!queue.Empty() && !done()) {
-    const EdgeHandle e(queue.Top());
-    if (kernel.status(e).deleted()) {
-      queue.Remove(e.idx());
-      continue;
-    }
-    const int tried = attempt[e.idx()];
-    const bool soft = tried < kNumTargets;
-    const Collapse plan = Plan(e, tried % kNumTargets);
-    if (!(ErrorOf(plan) <= options.max_error_m) || !wanted(e, plan)) {
-      queue.Remove(e.idx());
-    } else if (!LinkAllows(plan)) {
-      Reject(e);
-    } else if (ShapeAllows(plan, soft ? soft_limits : hard_limits)) {
-      queue.Remove(e.idx());
-      Execute(plan);
-      Requeue(kernel.to_vertex_handle(plan.halfedge));
-    } else {
-      Retry(e, plan.fixed_target);
-    }
-  }
-}
-
-void Collapser::Impl::Reject(EdgeHandle e) {
-  queue.Remove(e.idx());
-  rejected[e.idx()] = 1;
-}
-
-void Collapser::Impl::Retry(EdgeHandle e, bool fixed_target) {
-  int next = attempt[e.idx()] + 1;
-  if (fixed_target) next = next <= kNumTargets ? kNumTargets : 2 * kNumTargets;
-  const bool soft = next < kNumTargets;
-  if (next == 2 * kNumTargets || (!soft && options.shape_penalty == 0)) {
-    Reject(e);
-    return;
-  }
-  attempt[e.idx()] = static_cast<uint8_t>(next);
-  queue.Set(
-      e.idx(),
-      (soft ? 1 : options.shape_penalty) * Plan(e, next % kNumTargets).cost);
 }
 
 // The cost that the given share of the candidates does not exceed, by a sample
@@ -312,76 +236,6 @@ double Collapser::Impl::CostQuantile(double share) const {
       costs.begin() + static_cast<ptrdiff_t>(share * (costs.size() - 1));
   std::nth_element(costs.begin(), place, costs.end());
   return *place;
-}
-
-// Collapses, in the order of the edges, what is among the cheapest half, at
-// most one edge of a vertex, until `goal` faces are left. Returns whether that
-// took a tenth of the faces away.
-bool Collapser::Impl::Sweep(double goal, double max_cost) {
-  const double limit = std::min(CostQuantile(0.5), max_cost);
-  const int before = num_faces;
-  std::vector<uint8_t> touched(vertices.size(), 0);
-  for (const EdgeHandle e : kernel.edges()) {  // skips deleted edges
-    if (num_faces <= goal) break;
-    if (!MayCollapse(e)) continue;
-    const HalfedgeHandle h = kernel.halfedge_handle(e, 0);
-    uint8_t& from = touched[kernel.from_vertex_handle(h).idx()];
-    uint8_t& to = touched[kernel.to_vertex_handle(h).idx()];
-    if (from || to) continue;
-    const Collapse plan = Plan(e, 0);
-    if (plan.cost <= limit && ErrorOf(plan) <= options.max_error_m &&
-        LinkAllows(plan) && ShapeAllows(plan, soft_limits)) {
-      Execute(plan);
-      from = to = 1;
-    }
-  }
-  return num_faces < 0.9 * before;
-}
-
-Collapser::Collapser(const TriMesh& mesh,
-                     const PlanarPartition& partition,
-                     const SimplifyOptions& options)
-    : impl_(std::make_unique<Impl>(mesh, partition, options)) {}
-
-Collapser::~Collapser() = default;
-
-void Collapser::RunCounts() {
-  Impl& m = *impl_;
-  const double goal = std::max<double>(m.options.min_border_edges,
-                                       m.options.border_ratio * m.num_border);
-  const auto always = [](EdgeHandle, const Collapse&) { return true; };
-  for (int pass = 0; pass < m.options.passes; ++pass) {
-    m.Fill(kInner);
-    m.Run(
-        [&m](EdgeHandle e, const Collapse&) {
-          return m.cluster_inner[m.ClusterOf(e)] > m.options.inner_target;
-        },
-        [] { return false; });
-    m.Fill(kBorder);
-    m.Run(always, [&m, goal] { return m.num_border <= goal; });
-  }
-  m.RemoveFlatFaces();
-}
-
-void Collapser::RunBudget() {
-  Impl& m = *impl_;
-  const bool by_area = m.options.target_faces == 0;
-  const double budget =
-      by_area ? m.options.faces_per_m2 * m.total_area : m.options.target_faces;
-  const double max_cost =
-      by_area ? m.options.max_cost_m4 : std::numeric_limits<double>::max();
-  m.active = kInner | kBorder;
-  const double few = m.options.sweep_ratio * budget;
-  while (few > 0 && m.num_faces > few && m.Sweep(few, max_cost)) {
-  }
-  m.Fill(kInner | kBorder);
-  m.Run(
-      [&m, budget, max_cost](EdgeHandle, const Collapse& plan) {
-        return (m.num_faces > budget && plan.cost <= max_cost) ||
-               m.ErrorOf(plan) < m.options.free_error_m;
-      },
-      [] { return false; });
-  m.RemoveFlatFaces();
 }
 
 }  // namespace facet

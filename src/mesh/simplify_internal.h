@@ -12,12 +12,23 @@
 
 namespace facet {
 
+// Of less than two of these no region is divided. Regions much smaller leave
+// much to their seams, much larger ones little to share out.
+constexpr int kFacesPerRegion = 25000;
+
+// SimplifyByPlanes with regions of another size.
+SimplifyResult SimplifyInRegions(const TriMesh& mesh,
+                                 const PlanarPartition& partition,
+                                 const SimplifyOptions& options,
+                                 int faces_per_region);
+
 class Collapser {
  public:
   // Throws UnsolvableError if the mesh is not manifold.
   Collapser(const TriMesh& mesh,
             const PlanarPartition& partition,
-            const SimplifyOptions& options);
+            const SimplifyOptions& options,
+            int faces_per_region);
   ~Collapser();
 
   void RunCounts();
@@ -27,6 +38,7 @@ class Collapser {
   void Extract(SimplifyResult* result) const;
 
  private:
+  friend class CollapseTask;
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

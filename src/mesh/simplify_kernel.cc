@@ -12,29 +12,62 @@
 
 namespace facet {
 
-void Collapser::Impl::BuildKernel(const TriMesh& mesh) {
+Collapser::Impl::Impl(const TriMesh& mesh,
+                      const PlanarPartition& partition_in,
+                      const SimplifyOptions& options_in,
+                      int faces_per_region_in)
+    : partition(partition_in),
+      options(options_in),
+      faces_per_region(faces_per_region_in),
+      soft_limits(ShapeLimits::Soft(options_in)),
+      hard_limits(ShapeLimits::Hard(options_in)) {
+  const MeshRegions regions =
+      DivideIntoRegions(mesh, partition, faces_per_region);
+  BuildKernel(mesh, regions);
+  MarkBorders();
+  BuildQuadrics(mesh, regions);
+}
+
+// Numbers faces and edges region by region, vertices as the faces come across
+// them: what is near lies together in memory.
+void Collapser::Impl::BuildKernel(const TriMesh& mesh,
+                                  const MeshRegions& regions) {
   for (const auto& v : mesh.vertices) center += v;
   center /= static_cast<double>(std::max<size_t>(1, mesh.NumVertices()));
   kernel.reserve(
       mesh.NumVertices(), 3 * mesh.NumFaces() / 2 + 1000, mesh.NumFaces());
-  vertices.resize(mesh.NumVertices());
-  for (size_t v = 0; v < mesh.NumVertices(); ++v) {
-    kernel.new_vertex();
-    vertices[v].position = mesh.vertices[v] - center;
-  }
-  for (size_t f = 0; f < mesh.NumFaces(); ++f) {
-    const auto& face = mesh.faces[f];
-    const auto added = kernel.add_face(
-        VertexHandle(face[0]), VertexHandle(face[1]), VertexHandle(face[2]));
-    if (!added.is_valid()) {
-      throw UnsolvableError(
-          "simplification: the mesh is not manifold at face " +
-          std::to_string(f) + "; split non-manifold edges and vertices first");
+  vertices.reserve(mesh.NumVertices());
+  birth.reserve(mesh.NumVertices());
+  label.reserve(mesh.NumFaces());
+  std::vector<int> number(mesh.NumVertices(), -1);
+  for (int r = 0; r < regions.Count(); ++r) {
+    first_edge.push_back(static_cast<int>(kernel.n_edges()));
+    for (int i = regions.begin[r]; i < regions.begin[r + 1]; ++i) {
+      const int f = regions.faces[i];
+      VertexHandle corner[3];
+      for (int k = 0; k < 3; ++k) {
+        const int v = mesh.faces[f][k];
+        if (number[v] < 0) {
+          number[v] = kernel.new_vertex().idx();
+          birth.push_back(v);
+          vertices.emplace_back();
+          vertices.back().position = mesh.vertices[v] - center;
+        }
+        corner[k] = VertexHandle(number[v]);
+      }
+      if (!kernel.add_face(corner[0], corner[1], corner[2]).is_valid()) {
+        throw UnsolvableError(
+            "simplification: the mesh is not manifold at face " +
+            std::to_string(f) +
+            "; split non-manifold edges and vertices first");
+      }
+      label.push_back(partition.face_cluster[f]);
     }
-    total_area += mesh.FaceArea(f);
   }
-  label = partition.face_cluster;
-  num_faces = static_cast<int>(mesh.NumFaces());
+  first_edge.push_back(static_cast<int>(kernel.n_edges()));
+  first_face = regions.begin;
+  for (size_t f = 0; f < mesh.NumFaces(); ++f) total_area += mesh.FaceArea(f);
+  counts.faces = static_cast<int>(mesh.NumFaces());
   cluster_faces.assign(partition.clusters.size(), 0);
   for (const int id : label) ++cluster_faces[id];
 }
@@ -42,6 +75,7 @@ void Collapser::Impl::BuildKernel(const TriMesh& mesh) {
 void Collapser::Impl::MarkBorders() {
   border.assign(kernel.n_edges(), 0);
   rejected.assign(kernel.n_edges(), 0);
+  refused.assign(kernel.n_vertices(), 0);
   attempt.assign(kernel.n_edges(), 0);
   for (const EdgeHandle e : kernel.edges()) {
     const HalfedgeHandle h = kernel.halfedge_handle(e, 0);
@@ -52,38 +86,42 @@ void Collapser::Impl::MarkBorders() {
       continue;
     }
     border[e.idx()] = 1;
-    ++num_border;
+    ++counts.border;
     ++vertices[kernel.from_vertex_handle(h).idx()].border_degree;
     ++vertices[kernel.to_vertex_handle(h).idx()].border_degree;
   }
+  if (options.stop != SimplifyStop::kCounts) return;
   cluster_inner.assign(partition.clusters.size(), 0);
   for (const EdgeHandle e : kernel.edges()) {
     if (ClassOf(e) == kInner) ++cluster_inner[ClusterOf(e)];
   }
 }
 
-void Collapser::Impl::BuildQuadrics(const TriMesh& mesh) {
+void Collapser::Impl::BuildQuadrics(const TriMesh& mesh,
+                                    const MeshRegions& regions) {
   const double point_weight =
-      options.point_share * total_area / std::max(1, num_faces);
+      options.point_share * total_area / std::max(1, counts.faces);
   const double share = options.cluster_plane_share;
   quadric.reserve(vertices.size());
   for (const VertexData& v : vertices) {
     quadric.push_back(Quadric::Point(v.position, point_weight));
   }
-  for (size_t f = 0; f < mesh.NumFaces(); ++f) {
-    const Eigen::Vector3d cross = mesh.FaceCross(f);
+  for (int f = 0; f < counts.faces; ++f) {
+    const Eigen::Vector3d cross = mesh.FaceCross(regions.faces[f]);
     const double norm = cross.norm();
     if (!(norm > 0)) continue;
     const Eigen::Vector3d n = cross / norm;
     const double w = norm / 6;  // a third of the area, per corner
     const Plane& plane = partition.clusters[label[f]].plane;
+    const OpenMesh::FaceHandle face(f);
+    const VertexHandle first = *kernel.cfv_begin(face);
     Quadric q = Quadric::Plane(
-        n, -n.dot(vertices[mesh.faces[f][0]].position), (1 - share) * w);
+        n, -n.dot(vertices[first.idx()].position), (1 - share) * w);
     q += Quadric::Plane(plane.normal, plane.SignedDistance(center), share * w);
-    for (const int v : mesh.faces[f]) {
-      quadric[v] += q;
-      vertices[v].weight += w;
-      vertices[v].facing += w * n;
+    for (const VertexHandle v : kernel.fv_range(face)) {
+      quadric[v.idx()] += q;
+      vertices[v.idx()].weight += w;
+      vertices[v.idx()].facing += w * n;
     }
   }
   for (const EdgeHandle e : kernel.edges()) {
@@ -124,7 +162,7 @@ bool Collapser::Impl::CollapseSideOf(OpenMesh::FaceHandle face) {
       const Collapse plan = Plan(e, target);
       if (ErrorOf(plan) <= options.max_error_m && LinkAllows(plan) &&
           ShapeAllows(plan, soft_limits)) {
-        Execute(plan);
+        Execute(plan, &counts);
         return true;
       }
       if (plan.fixed_target) break;
@@ -226,7 +264,7 @@ void Collapser::Extract(SimplifyResult* result) const {
       int& i = index[v.idx()];
       if (i < 0) {
         i = static_cast<int>(result->vertex_birth.size());
-        result->vertex_birth.push_back(v.idx());
+        result->vertex_birth.push_back(m.birth[v.idx()]);
         result->mesh.vertices.push_back(m.vertices[v.idx()].position +
                                         m.center);
       }
@@ -235,8 +273,8 @@ void Collapser::Extract(SimplifyResult* result) const {
     result->mesh.faces.push_back(face);
     result->partition.face_cluster.push_back(m.label[f.idx()]);
   }
-  result->report.collapses = m.num_collapses;
-  result->report.max_error_m = m.max_error;
+  result->report.collapses = m.counts.collapses;
+  result->report.max_error_m = m.counts.max_error;
 }
 
 }  // namespace facet
