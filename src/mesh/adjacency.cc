@@ -3,39 +3,26 @@
 #include "mesh/adjacency.h"
 
 #include <algorithm>
-#include <cstdint>
-#include <utility>
+
+#include "mesh/edge_uses.h"
 
 namespace facet {
 
 std::vector<MeshEdge> CollectEdges(const TriMesh& mesh) {
-  // (v0, v1) packed into one key sorts twice as fast as a tuple.
-  std::vector<std::pair<uint64_t, int>> sides;
-  sides.reserve(3 * mesh.NumFaces());
-  for (size_t f = 0; f < mesh.NumFaces(); ++f) {
-    for (int k = 0; k < 3; ++k) {
-      const auto [v0, v1] =
-          std::minmax(mesh.faces[f][k], mesh.faces[f][(k + 1) % 3]);
-      if (v0 == v1) continue;
-      sides.emplace_back(static_cast<uint64_t>(v0) << 32 | v1,
-                         static_cast<int>(f));
-    }
-  }
-  std::sort(sides.begin(), sides.end());
-
+  const std::vector<EdgeUse> uses = SortedEdgeUses(mesh);
   std::vector<MeshEdge> edges;
-  edges.reserve(sides.size() / 2 + 16);
-  for (size_t i = 0; i < sides.size(); ++i) {
-    if (i == 0 || sides[i].first != sides[i - 1].first) {
-      MeshEdge edge;
-      edge.v0 = static_cast<int>(sides[i].first >> 32);
-      edge.v1 = static_cast<int>(sides[i].first & 0xffffffffu);
-      edges.push_back(edge);
+  edges.reserve(uses.size() / 2 + 16);
+  ForEachEdge(uses, [&](size_t begin, size_t end) {
+    if (uses[begin].low == uses[begin].high) return;
+    MeshEdge edge;
+    edge.v0 = uses[begin].low;
+    edge.v1 = uses[begin].high;
+    edge.num_faces = static_cast<int>(end - begin);
+    for (size_t i = begin; i < std::min(end, begin + 2); ++i) {
+      edge.face[i - begin] = uses[i].Face();
     }
-    MeshEdge& edge = edges.back();
-    if (edge.num_faces < 2) edge.face[edge.num_faces] = sides[i].second;
-    ++edge.num_faces;
-  }
+    edges.push_back(edge);
+  });
   return edges;
 }
 

@@ -14,7 +14,7 @@ namespace facet {
 
 // Of less than two of these no region is divided. Regions much smaller leave
 // much to their seams, much larger ones little to share out.
-constexpr int kFacesPerRegion = 25000;
+constexpr int kFacesPerRegion = 40000;
 
 // SimplifyByPlanes with regions of another size.
 SimplifyResult SimplifyInRegions(const TriMesh& mesh,

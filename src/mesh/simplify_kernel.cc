@@ -15,10 +15,9 @@ namespace facet {
 Collapser::Impl::Impl(const TriMesh& mesh,
                       const PlanarPartition& partition_in,
                       const SimplifyOptions& options_in,
-                      int faces_per_region_in)
+                      int faces_per_region)
     : partition(partition_in),
       options(options_in),
-      faces_per_region(faces_per_region_in),
       soft_limits(ShapeLimits::Soft(options_in)),
       hard_limits(ShapeLimits::Hard(options_in)) {
   const MeshRegions regions =

@@ -72,7 +72,7 @@ struct Collapser::Impl {
   Impl(const TriMesh& mesh,
        const PlanarPartition& partition_in,
        const SimplifyOptions& options_in,
-       int faces_per_region_in);
+       int faces_per_region);
 
   void BuildKernel(const TriMesh& mesh, const MeshRegions& regions);
   void MarkBorders();
@@ -126,7 +126,6 @@ struct Collapser::Impl {
 
   const PlanarPartition& partition;
   const SimplifyOptions options;
-  const int faces_per_region;
   const ShapeLimits soft_limits, hard_limits;
   Kernel kernel;
   Eigen::Vector3d center = Eigen::Vector3d::Zero();

@@ -16,14 +16,15 @@ namespace {
 
 using Tasks = std::vector<std::unique_ptr<CollapseTask>>;
 
-// A grouping goes on until it has a quarter of the faces that are meant for a
-// leaf; then four regions become one. So queues stay small and seams wander.
+// When this share of the faces is left, four regions become one, and so on:
+// queues stay small, and seams do not lag behind so far that it costs shape.
 constexpr int kGroup = 4;
+constexpr double kLeaveToGroups = 0.6;
 // Sweeps need no queue: larger regions, shorter seams.
 constexpr int kSweepGroup = 8;
 // Regions stop at this many times the budget: what is collapsed last must be
 // the cheapest of the whole mesh.
-constexpr double kLeaveToWhole = 3;
+constexpr double kLeaveToWhole = 4;
 constexpr double kCostStep = 4;  // of the limit, from round to round
 
 int Faces(const Tasks& tasks) {
@@ -137,9 +138,9 @@ void Collapser::Impl::CollapseInside(double budget, double max_cost) {
   double limit = std::max(CostQuantile(0.25), 1e-30);
   for (int size = 1; size < NumLeaves(); size *= kGroup) {
     GroupRegions(size);
-    const double goal =
-        static_cast<double>(NumRegions()) * faces_per_region / kGroup;
-    if (RunRounds(goal, budget, max_cost, &limit)) break;
+    if (RunRounds(kLeaveToGroups * counts.faces, budget, max_cost, &limit)) {
+      break;
+    }
     limit /= kCostStep;  // the seams have to catch up
   }
 }
