@@ -114,7 +114,8 @@ struct SimplifyResult {
 // `mesh` must be manifold (SplitNonManifold of mesh/clean.h makes it so) and
 // `partition` must label every face. Manifold in, manifold out: components,
 // boundary loops and Euler number stay as they are. Throws OptionsError;
-// UnsolvableError if the mesh is not manifold.
+// UnsolvableError if the mesh is not manifold. Runs on all threads
+// (util/parallel_for.h); the result does not depend on their number.
 SimplifyResult SimplifyByPlanes(const TriMesh& mesh,
                                 const PlanarPartition& partition,
                                 const SimplifyOptions& options);

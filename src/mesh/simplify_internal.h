@@ -12,8 +12,8 @@
 
 namespace facet {
 
-// Of less than two of these no region is divided. Regions much smaller leave
-// much to their seams, much larger ones little to share out.
+// At most, but for single larger clusters. Much smaller regions leave much to
+// their seams; much larger ones do not fit into the cache.
 constexpr int kFacesPerRegion = 40000;
 
 // SimplifyByPlanes with regions of another size.
