@@ -322,7 +322,7 @@ void SolveJoint(const TextureProblem& problem,
   // Conjugate gradients end at iteration k when it added less than eta / k of
   // the decrease so far. The soft common modes add little to the model's cost
   // and come last: with Ceres's 0.1 they are left out after two iterations.
-  options.eta = 1e-2;
+  options.eta = 2e-3;
   options.max_num_iterations = config.max_joint_iterations;
   options.initial_trust_region_radius = memory->joint_radius;
   options.max_trust_region_radius = config.max_joint_radius;

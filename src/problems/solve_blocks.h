@@ -50,7 +50,7 @@ struct SolverConfig {
   JointLinearSolver joint_linear_solver = JointLinearSolver::kCgnr;
   // Joint solve: kappa and eta of problems/joint_pass.h, and the largest
   // trust-region radius, which with the pose prior holds soft gauge directions.
-  int max_joint_iterations = 4;
+  int max_joint_iterations = 5;
   // The Hessian is built and factored anew at every so many points; the
   // gradient always is. >= 1.
   int joint_hessian_every = 3;
