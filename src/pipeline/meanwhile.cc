@@ -8,11 +8,11 @@
 
 namespace facet {
 
-void Meanwhile::ReadImages() {
-  reading_ = std::make_unique<Background>([this] {
+void Meanwhile::ReadImages(const ImageStore& store) {
+  reading_ = std::make_unique<Background>([this, store] {
     choice_ = ChooseKeyframes(sequence_, options_.keyframes);
     if (options_.to_stage < Stage::kPhotometric) return;
-    images_ = LoadKeyframeColors(sequence_, choice_.keyframes);
+    images_ = LoadKeyframeColors(sequence_, choice_.keyframes, store);
   });
 }
 

@@ -25,8 +25,8 @@ class Meanwhile {
       : options_(options), sequence_(sequence) {}
 
   // Begins to choose the keyframes, and to decode them if the run goes so far
-  // as to need them.
-  void ReadImages();
+  // as to need them. They are held in `store`.
+  void ReadImages(const ImageStore& store);
 
   // Wait for them. Throw as ChooseKeyframes and LoadKeyframeColors. Keyframes
   // are there after ReadImages only; without it, or taken already, the colours

@@ -118,8 +118,13 @@ class Level {
     problem_.depth_moments = inputs.depth_moments;
     problem_.surface = inputs.surface;
     problem_.texels_per_m2 = std::pow(stride * inputs.texel_size_m, -2);
+    if (images_.store.InFile()) {
+      problem_.release_images = [this](int k) { Release(k); };
+    }
     FinishTextureProblem(&problem_);
   }
+  Level(const Level&) = delete;  // the problem refers to it
+  Level& operator=(const Level&) = delete;
 
   const TextureProblem& problem() const { return problem_; }
 
@@ -145,8 +150,9 @@ class Level {
   void MakeLuma() {
     luma_ = images_.smooth;  // headers only
     if (smoothed_) {
-      ParallelFor(
-          0, luma_.size(), [&](size_t k) { luma_[k] = LumaOf(images_, k); });
+      ParallelFor(0, luma_.size(), [&](size_t k) {
+        luma_[k] = images_.store.Keep(LumaOf(images_, k));
+      });
     }
     for (const cv::Mat& luma : luma_) {
       problem_.raw_images.push_back(ViewOf(luma));
@@ -158,6 +164,9 @@ class Level {
     ParallelFor(0, channels_.size(), [&](size_t k) {
       channels_[k] =
           SmoothChannels(images_.rgb[k], images_.ExposureOf(k), sigma);
+      for (cv::Mat& channel : channels_[k]) {
+        channel = images_.store.Keep(channel);
+      }
     });
     problem_.more_images.resize(2);
     for (size_t k = 0; k < channels_.size(); ++k) {
@@ -165,6 +174,13 @@ class Level {
       problem_.more_images[0].push_back(ViewOf(channels_[k][1]));
       problem_.more_images[1].push_back(ViewOf(channels_[k][2]));
     }
+  }
+
+  void Release(int k) const {
+    ReleasePages(images_.smooth[k]);
+    if (!luma_.empty()) ReleasePages(luma_[k]);
+    if (channels_.empty()) return;
+    for (const cv::Mat& channel : channels_[k]) ReleasePages(channel);
   }
 
   KeyframeImages images_;

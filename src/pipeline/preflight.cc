@@ -7,7 +7,9 @@
 #include <cstdio>
 
 #include "eval/input_check.h"
+#include "schedule/schedule.h"
 #include "util/errors.h"
+#include "util/parallel_for.h"
 #include "util/warnings.h"
 
 namespace facet {
@@ -23,6 +25,19 @@ constexpr double kSolverMb = 180;
 constexpr double kBytesPerSampledTexel = 100, kBytesPerObservation = 11;
 constexpr double kBytesPerAtlasTexel = 150;
 constexpr double kSeenShare = 0.15;  // of the keyframes see a texel
+constexpr double kWorkBytes = 40;    // a pixel of an image that is being made
+
+// Phases whose solver sees all smooth images at once.
+bool ReadsAllImagesAtOnce(const PhotometricOptions& options) {
+  const JointMethod joint = options.solver.joint_method;
+  const std::vector<SolvedSet> phases =
+      PhasesOf(ParseSchedule(options.schedule, joint), joint);
+  return std::any_of(phases.begin(), phases.end(), [](const SolvedSet& phase) {
+    const bool colors = (phase.blocks & kColors) != 0;
+    return phase.blocks == kPlanes || (colors && phase.blocks != kColors &&
+                                       HasExplicitColors(phase.joint));
+  });
+}
 
 }  // namespace
 
@@ -51,17 +66,24 @@ double MemoryEstimate::PeakMb() const {
 }
 
 MemoryEstimate EstimateMemory(const ReconstructOptions& options,
-                              const SceneSize& size) {
+                              const SceneSize& size,
+                              ImagePlace place) {
   const PhotometricOptions& p = options.photometric;
   const double pixels = static_cast<double>(size.keyframes) * size.image_pixels;
-  const double images_mb = (kColorBytes + kDepthBytes) * pixels / kMb;
-  const double kept =
-      kBaseMb + kBytesPerKeptFace * size.faces / kMb + images_mb;
   const bool keeps_luma = p.solver.trace_rms_grey && p.smoothing_sigma_px > 0;
   const double float_bytes = kSmoothBytes + (keeps_luma ? kLumaBytes : 0);
   // One coarser level of the pyramid at a time.
   const double coarse_bytes =
       p.levels > 1 ? 0.25 * (kColorBytes + float_bytes) : 0;
+  const double all_mb = (kColorBytes + kDepthBytes) * pixels / kMb;
+  const double all_floats_mb = (float_bytes + coarse_bytes) * pixels / kMb;
+  double images_mb = all_mb, floats_mb = all_floats_mb, painted_mb = all_mb;
+  if (place == ImagePlace::kFile) {
+    images_mb = kWorkBytes * NumThreads() * size.image_pixels / kMb;
+    floats_mb = ReadsAllImagesAtOnce(p) ? kSmoothBytes * pixels / kMb : 0;
+    painted_mb = images_mb + kSeenShare * kColorBytes * pixels / kMb;
+  }
+  const double kept = kBaseMb + kBytesPerKeptFace * size.faces / kMb;
   const double texel = options.atlas.texel_size_m;
   const double texels = size.area_m2 / (texel * texel);
   const double views = std::max(1.0, kSeenShare * size.keyframes);
@@ -74,29 +96,29 @@ MemoryEstimate EstimateMemory(const ReconstructOptions& options,
   estimate.mesh_mb = kBaseMb + kBytesPerFace * size.faces / kMb + images_mb;
   estimate.drawing_mb = kDrawingMb + kBytesPerDrawnFace * size.faces / kMb;
   estimate.photometric_mb =
-      kept + kSolverMb + (float_bytes + coarse_bytes) * pixels / kMb +
+      kept + images_mb + kSolverMb + floats_mb +
       sampled * (kBytesPerSampledTexel + kBytesPerObservation * views) / kMb;
-  estimate.export_mb = kept + kBytesPerAtlasTexel * texels / kMb;
+  estimate.export_mb = kept + painted_mb + kBytesPerAtlasTexel * texels / kMb;
+  if (place == ImagePlace::kFile) estimate.file_mb = all_mb + all_floats_mb;
   return estimate;
 }
 
-void FitIntoMemory(const SceneSize& size, ReconstructOptions* options) {
-  const double limit_mb = 1024 * options->max_memory_gb;
-  if (!(limit_mb > 0)) return;
-  const auto fits = [&] {
-    return EstimateMemory(*options, size).PeakMb() <= limit_mb;
-  };
-  if (fits()) return;
-  options->photometric.solver.trace_rms_grey = false;
-  if (fits()) return;
-  char text[200];
+ImagePlace FitIntoMemory(const ReconstructOptions& options,
+                         const SceneSize& size) {
+  const double limit_mb = 1024 * options.max_memory_gb;
+  double least_mb = 0;
+  for (const ImagePlace place : {ImagePlace::kMemory, ImagePlace::kFile}) {
+    least_mb = EstimateMemory(options, size, place).PeakMb();
+    if (!(limit_mb > 0) || least_mb <= limit_mb) return place;
+  }
+  char text[300];
   std::snprintf(text,
                 sizeof(text),
-                "about %.2f GB are needed, more than --max_memory_gb=%.6g: use "
-                "a coarser mesh, a larger --keyframe_window or --texel_size, "
-                "or a smaller --max_observations",
-                EstimateMemory(*options, size).PeakMb() / 1024,
-                options->max_memory_gb);
+                "about %.2f GB are needed even with the images in a file, more "
+                "than --max_memory_gb=%.6g: use a coarser mesh, a larger "
+                "--texel_size, or a smaller --max_observations",
+                least_mb / 1024,
+                options.max_memory_gb);
   throw OptionsError(text);
 }
 
@@ -125,7 +147,9 @@ std::string DescribePlan(const SceneSize& size,
                 size.area_m2,
                 size.keyframes,
                 estimate.PeakMb());
-  return text;
+  if (!(estimate.file_mb > 0)) return text;
+  return text + (", images in a scratch file of " +
+                 std::to_string(std::lround(estimate.file_mb)) + " MB");
 }
 
 void WarnOfConventions(const RgbdSequence& sequence,

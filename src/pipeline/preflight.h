@@ -27,12 +27,16 @@ SceneSize MeasureScene(const ReconstructOptions& options,
                        const TriMesh& dense,
                        const RgbdSequence& sequence);
 
+// Where the images of the keyframes are held (rgbd/image_store.h).
+enum class ImagePlace { kMemory, kFile };
+
 // Largest resident memory of each part of a run [MB of 2^20 bytes].
 struct MemoryEstimate {
   double mesh_mb = 0;         // partition and simplification, images
   double drawing_mb = 0;      // beside it: pictures of the dense mesh
   double photometric_mb = 0;  // images, texels, observations
   double export_mb = 0;       // images, final colours, previews
+  double file_mb = 0;         // of the disk, for images in a file
 
   double PeakMb() const;
   // Whether these pictures may be drawn while the mesh is simplified.
@@ -51,18 +55,25 @@ struct MemoryEstimate {
 // Texels are area / texel_size^2, sampled ones 1 / stride^2 of them, each seen
 // by 15 % of the keyframes; with stride 0 the observations stay below
 // max_observations. Within a factor of two where views are that dense.
+//
+// With the images in a file a thread holds those that it works on, 40 bytes a
+// pixel, and the final texture the colours that its neighbouring tiles see, of
+// 15 % of the keyframes. Phases that solve planes alone, or explicit colours,
+// still read all smooth images at once.
 MemoryEstimate EstimateMemory(const ReconstructOptions& options,
-                              const SceneSize& size);
+                              const SceneSize& size,
+                              ImagePlace place = ImagePlace::kMemory);
 
-// Makes a run fit into options->max_memory_gb: without rms_grey in the trace
-// but for its first and last state, unless it fits anyway. The model does not
-// depend on it. Throws OptionsError if that is not enough. It is the estimate
-// that is held to the limit, not the run.
-void FitIntoMemory(const SceneSize& size, ReconstructOptions* options);
+// Where images must be held for a run to fit into options.max_memory_gb: in
+// memory if it fits so. No result depends on it. Throws OptionsError if a file
+// is not enough either. It is the estimate that is held to the limit, not the
+// run.
+ImagePlace FitIntoMemory(const ReconstructOptions& options,
+                         const SceneSize& size);
 
-// "765221 faces, 80.2 m2, 184 keyframes of 640x480: ..." for the plan line.
-// Raises a warning that names the flags if `estimate` is more than
-// `available_mb` (0 = unknown).
+// "765221 faces, 80.2 m2, up to 184 keyframes: about 870 MB, images in a
+// scratch file of 600 MB" for the plan line. Raises a warning that names the
+// flags if `estimate` is more than `available_mb` (0 = unknown).
 std::string DescribePlan(const SceneSize& size,
                          const MemoryEstimate& estimate,
                          double available_mb);

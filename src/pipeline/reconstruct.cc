@@ -43,7 +43,8 @@ class Run {
     CheckOptions(options_);
     sequence_ = OpenSequence(options_.sequence_path, options_.sequence);
     meanwhile_ = std::make_unique<Meanwhile>(options_, *sequence_);
-    if (ReadsImages()) meanwhile_->ReadImages();
+    // Under a limit the plan must say first where images go.
+    if (!(options_.max_memory_gb > 0)) ReadImages();
     RunPartition();
     if (Wanted(Stage::kSimplify)) RunSimplify();
     if (Wanted(Stage::kKeyframes)) RunKeyframes();
@@ -107,13 +108,25 @@ class Run {
 
   void AnnouncePlan() {
     const SceneSize size = MeasureScene(options_, dense_.mesh, *sequence_);
-    FitIntoMemory(size, &options_);
-    const MemoryEstimate estimate = EstimateMemory(options_, size);
+    place_ = FitIntoMemory(options_, size);
+    const MemoryEstimate estimate = EstimateMemory(options_, size, place_);
     draw_early_ = estimate.DrawsBesideMesh();
     const double available = AvailableMemoryMb();
     PrintLine("plan          " + DescribePlan(size, estimate, available));
+    const bool in_file = place_ == ImagePlace::kFile;
     report_["memory"] = {{"estimate_mb", estimate.PeakMb()},
-                         {"available_mb", available}};
+                         {"available_mb", available},
+                         {"images", in_file ? "file" : "memory"},
+                         {"file_mb", estimate.file_mb}};
+  }
+
+  // Begins to, if that is not done yet.
+  void ReadImages() {
+    if (place_ == ImagePlace::kFile) {
+      store_ = ImageStore::InFolder(options_.output_path);
+    }
+    sequence_->KeepDepthIn(store_);
+    if (ReadsImages()) meanwhile_->ReadImages(store_);
   }
 
   void RunPartition() {
@@ -122,6 +135,7 @@ class Run {
       dense_ = LoadMeshArtefact(options_, Stage::kPartition);
       RestoreWarnings(dense_.warnings);
       AnnouncePlan();
+      if (options_.max_memory_gb > 0) ReadImages();
       stages_.push_back(clock.Finish("read"));
       return;
     }
@@ -133,6 +147,7 @@ class Run {
     const SplitReport split = SplitNonManifold(&dense_.mesh);
     AnnouncePlan();
     BeginWriting();
+    if (options_.max_memory_gb > 0) ReadImages();
     if (split.non_manifold_edges + split.split_vertices > 0) {
       AddWarning(
           Format("%s: opened %zu non-manifold edges and split %zu "
@@ -235,7 +250,7 @@ class Run {
     initial_poses_ = sequence_->ColorPoses(keyframes_.keyframes);
     images_ = meanwhile_->TakeColors();
     if (images_.size() == 0) {
-      images_ = LoadKeyframeColors(*sequence_, keyframes_.keyframes);
+      images_ = LoadKeyframeColors(*sequence_, keyframes_.keyframes, store_);
     }
     atlas_ =
         BuildAtlas(simplified_.mesh, simplified_.partition, options_.atlas);
@@ -388,6 +403,8 @@ class Run {
   GeometryArtefact geometry_;
   std::vector<Pose> initial_poses_;  // colour camera, a keyframe
   std::vector<Plane> initial_planes_;
+  ImagePlace place_ = ImagePlace::kMemory;
+  ImageStore store_;  // of images, as place_ says
   KeyframeImages images_;
   Atlas atlas_;
   bool draw_early_ = false;  // the dense mesh, while it is simplified

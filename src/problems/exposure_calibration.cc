@@ -81,6 +81,7 @@ SampleTable SampleColors(const TexelSet& texels,
                     : Eigen::Vector3f::Constant(
                           std::numeric_limits<float>::quiet_NaN());
     }
+    ReleasePages(images.rgb[k]);
   });
   return table;
 }

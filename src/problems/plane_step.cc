@@ -153,6 +153,9 @@ void SolvePlanes(const TextureProblem& problem,
       Eigen::Map<Eigen::Vector4d>(plane, 4) = before;
       reverted[j] = 1;
     }
+    for (const PlaneSegment& segment : segments) {
+      problem.ReleaseImages(segment.keyframe);
+    }
   });
   for (size_t j = 0; j < num_planes; ++j) {
     summary->problems += iterations[j] > 0 ? 1 : 0;

@@ -288,6 +288,7 @@ void SolvePosesAndWarps(const TextureProblem& problem,
                             static_cast<int>(k),
                             &memory->frame_radius[k],
                             state);
+    problem.ReleaseImages(static_cast<int>(k));
   });
   for (const FrameResult& result : results) {
     summary->problems += result.iterations > 0 ? 1 : 0;

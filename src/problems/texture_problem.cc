@@ -173,6 +173,7 @@ void BuildGradients(TextureProblem* problem) {
                                    static_cast<int>(i) % num_keyframes),
                     &problem->gradients_x[i],
                     &problem->gradients_y[i]);
+    problem->ReleaseImages(static_cast<int>(i) % num_keyframes);
   });
 }
 

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -65,6 +66,9 @@ struct TextureProblem {
   // Channels::kRgb: green, then blue images.
   std::vector<std::vector<ImageView<float>>> more_images;
   std::vector<ImageView<float>> raw_images;  // luma, unsmoothed: rms_grey
+  // If set, called when the images of a keyframe have been read for now, from
+  // any thread, to release their memory (rgbd/image_store.h).
+  std::function<void(int keyframe)> release_images;
   TexelSet texels;
   Observations observations;
   std::vector<TexelTile> tiles;
@@ -93,6 +97,9 @@ struct TextureProblem {
   int NumChannels() const { return 1 + static_cast<int>(more_images.size()); }
   const ImageView<float>& Image(int channel, int keyframe) const {
     return channel == 0 ? images[keyframe] : more_images[channel - 1][keyframe];
+  }
+  void ReleaseImages(int keyframe) const {
+    if (release_images) release_images(keyframe);
   }
   int NumKeyframes() const { return static_cast<int>(images.size()); }
   int NumPlanes() const { return static_cast<int>(anchors.size()); }

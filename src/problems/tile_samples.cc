@@ -62,6 +62,7 @@ void TileSlab::Sample(size_t tile_begin, size_t tile_end) {
       PhotoCounts other;
       SampleRun(c, static_cast<int>(k), c == 0 ? &counts[k] : &other);
     }
+    problem_.ReleaseImages(static_cast<int>(k));
   });
   for (const PhotoCounts& c : counts) counts_ += c;
 }

@@ -125,8 +125,11 @@ class BundleFusionSequence : public RgbdSequence {
 
  private:
   cv::Mat DepthWithin(int frame_idx, double min_m, double max_m) const {
-    return DepthInMetres(
-        RawDepth(frame_idx), calibration_.depth_shift, min_m, max_m);
+    const cv::Mat raw = RawDepth(frame_idx);
+    const cv::Mat depth =
+        DepthInMetres(raw, calibration_.depth_shift, min_m, max_m);
+    ReleasePages(raw);
+    return depth;
   }
 
   cv::Mat RawDepth(int frame_idx) const {
@@ -139,6 +142,7 @@ class BundleFusionSequence : public RgbdSequence {
     cv::Mat raw = ReadRawDepthImage(file);
     CheckSize(raw, calibration_.depth, file);
     if (options_.keep_depth) {
+      raw = depth_store_.Keep(raw);
       const std::lock_guard<std::mutex> lock(kept_mutex_);
       kept_depth_.emplace(frame_idx, raw);
     }

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "rgbd/camera.h"
+#include "rgbd/image_store.h"
 
 namespace facet {
 
@@ -36,8 +37,8 @@ struct SequenceOptions {
   // Depth outside [min, max] counts as missing [m].
   double min_depth_m = 0.3;
   double max_depth_m = 6.0;
-  // Depth images stay in memory once they are decoded, at 2 bytes a pixel.
-  bool keep_depth = false;
+  // Depth images are kept once they are decoded, at 2 bytes a pixel.
+  bool keep_depth = false;  // see RgbdSequence::KeepDepthIn
 };
 
 class RgbdSequence {
@@ -67,6 +68,10 @@ class RgbdSequence {
   // size.
   virtual cv::Mat LoadColor(int frame_idx) const = 0;
 
+  // Where depth images are held with SequenceOptions::keep_depth; in memory if
+  // not called. Call before the first is read.
+  void KeepDepthIn(const ImageStore& store) { depth_store_ = store; }
+
   // Luma of the colour image, CV_32F in [0, 1], to a grey value or so: enough
   // to measure blur, and faster than by colours. Throws as LoadColor.
   virtual cv::Mat LoadLuma(int frame_idx) const;
@@ -85,6 +90,7 @@ class RgbdSequence {
   std::vector<Frame> frames_;
   std::string path_;
   SequenceOptions options_;
+  ImageStore depth_store_;
 };
 
 // Opens the folder layout of BundleFusion, 3DLite and 7-Scenes

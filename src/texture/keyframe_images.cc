@@ -21,7 +21,10 @@ cv::Mat Smooth(const cv::Mat& image, double sigma) {
 
 cv::Mat LumaOf(const KeyframeImages& images, size_t keyframe) {
   const Exposure exposure = images.ExposureOf(keyframe);
-  return LumaFromRgb(images.rgb[keyframe], exposure.gain, exposure.offset);
+  const cv::Mat& rgb = images.rgb[keyframe];
+  cv::Mat luma = LumaFromRgb(rgb, exposure.gain, exposure.offset);
+  ReleasePages(rgb);
+  return luma;
 }
 
 std::array<cv::Mat, 3> SmoothChannels(const cv::Mat& rgb,
@@ -29,6 +32,7 @@ std::array<cv::Mat, 3> SmoothChannels(const cv::Mat& rgb,
                                       double sigma) {
   std::array<cv::Mat, 3> channels;
   cv::split(rgb, channels.data());
+  ReleasePages(rgb);
   for (int c = 0; c < 3; ++c) {
     channels[c].convertTo(
         channels[c], CV_32F, exposure.gain[c] / 255.0, exposure.offset[c]);
@@ -43,16 +47,18 @@ void SetExposures(const std::vector<Exposure>& exposures,
   images->exposures = exposures;
   images->smooth.resize(images->size());
   ParallelFor(0, images->size(), [&](size_t k) {
-    images->smooth[k] = Smooth(LumaOf(*images, k), sigma);
+    images->smooth[k] = images->store.Keep(Smooth(LumaOf(*images, k), sigma));
   });
 }
 
 KeyframeImages LoadKeyframeColors(const RgbdSequence& sequence,
-                                  const std::vector<int>& keyframes) {
+                                  const std::vector<int>& keyframes,
+                                  const ImageStore& store) {
   KeyframeImages images;
+  images.store = store;
   images.rgb.resize(keyframes.size());
   ParallelFor(0, keyframes.size(), [&](size_t k) {
-    images.rgb[k] = sequence.LoadColor(keyframes[k]);
+    images.rgb[k] = store.Keep(sequence.LoadColor(keyframes[k]));
   });
   return images;
 }
@@ -62,6 +68,7 @@ KeyframeImages PyramidLevel(const KeyframeImages& images,
                             double sigma) {
   KeyframeImages reduced;
   reduced.exposures = images.exposures;
+  reduced.store = images.store;
   const size_t n = images.size();
   reduced.rgb.resize(n);
   reduced.smooth.resize(n);
@@ -75,8 +82,9 @@ KeyframeImages PyramidLevel(const KeyframeImages& images,
       cv::resize(image(whole_squares), out, size, 0, 0, cv::INTER_AREA);
       return out;
     };
-    reduced.rgb[k] = reduce(images.rgb[k]);
-    reduced.smooth[k] = Smooth(reduce(LumaOf(images, k)), sigma);
+    reduced.rgb[k] = images.store.Keep(reduce(images.rgb[k]));
+    reduced.smooth[k] =
+        images.store.Keep(Smooth(reduce(LumaOf(images, k)), sigma));
   });
   return reduced;
 }

@@ -2,13 +2,15 @@
 // SPDX-License-Identifier: MIT
 //
 // The colour images of all keyframes, decoded once and kept: 3 bytes a pixel, 7
-// with the smooth images (185 frames of 640 x 480: 0.4 GB).
+// with the smooth images (185 frames of 640 x 480: 0.4 GB). With a store in a
+// file that is disk; who reads many images releases each (ReleasePages).
 #pragma once
 
 #include <array>
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "rgbd/image_store.h"
 #include "rgbd/sequence.h"
 #include "texture/exposure.h"
 
@@ -22,6 +24,7 @@ struct KeyframeImages {
   std::vector<cv::Mat> smooth;
   // `smooth` has these applied, `rgb` is as taken. May be empty: all as taken.
   std::vector<Exposure> exposures;
+  ImageStore store;  // where they are held
 
   size_t size() const { return rgb.size(); }
   Exposure ExposureOf(size_t keyframe) const {
@@ -29,11 +32,13 @@ struct KeyframeImages {
   }
 };
 
-// Unsmoothed luma, CV_32F in [0, 1], with the exposure applied.
+// Unsmoothed luma, CV_32F in [0, 1], with the exposure applied. Releases the
+// colours.
 cv::Mat LumaOf(const KeyframeImages& images, size_t keyframe);
 
 // The red, green and blue images of a keyframe as floats, nominally in [0, 1],
-// with the exposure applied, after a Gaussian of `sigma` px.
+// with the exposure applied, after a Gaussian of `sigma` px. Releases the
+// colours.
 std::array<cv::Mat, 3> SmoothChannels(const cv::Mat& rgb,
                                       const Exposure& exposure,
                                       double sigma);
@@ -41,7 +46,8 @@ std::array<cv::Mat, 3> SmoothChannels(const cv::Mat& rgb,
 // The colours alone. `keyframes` are indices into sequence.frames(). Throws
 // InputError when an image does not decode.
 KeyframeImages LoadKeyframeColors(const RgbdSequence& sequence,
-                                  const std::vector<int>& keyframes);
+                                  const std::vector<int>& keyframes,
+                                  const ImageStore& store = ImageStore());
 
 // Sets the exposures, one a keyframe or none, and makes the smooth images anew.
 void SetExposures(const std::vector<Exposure>& exposures,

@@ -3,6 +3,7 @@
 #include "texture/tile_painter.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "costs/frame_cell_cost.h"
@@ -16,6 +17,10 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr size_t kBlock = ColorSums::kBlock;
+
+// Neighbours read the same parts of the same images: their memory is given back
+// after so many tiles.
+constexpr size_t kTilesPerRelease = 32;
 
 // Which texels of a tile any keyframe sees by the strict tests.
 std::vector<uint64_t> SeenWell(const BakeTile& tile,
@@ -145,11 +150,15 @@ void TilePainter::MakeViews() {
 
 std::vector<cv::Mat> TilePainter::Paint(const std::vector<char>& only_faces,
                                         BakeReport* report) {
+  std::atomic<size_t> painted = 0;
   ParallelFor(0, texels_.tiles.size(), [&](size_t t) {
     const BakeTile& tile = texels_.tiles[t];
     reports_[t].texels = tile.owned_end - tile.begin;
-    if (IsWanted(tile, only_faces)) PaintTile(t);
+    if (!IsWanted(tile, only_faces)) return;
+    PaintTile(t);
+    if (++painted % kTilesPerRelease == 0) ReleaseImages();
   });
+  ReleaseImages();
   std::vector<cv::Mat> pages = FillPages(
       state_.mesh, atlas_, texels_, seen_, options_.inpaint, &colors_);
   if (report) {
@@ -157,6 +166,10 @@ std::vector<cv::Mat> TilePainter::Paint(const std::vector<char>& only_faces,
     report->unseen_mask = UnseenMask(atlas_, texels_, seen_);
   }
   return pages;
+}
+
+void TilePainter::ReleaseImages() const {
+  for (const cv::Mat& rgb : state_.images.rgb) ReleasePages(rgb);
 }
 
 bool TilePainter::IsWanted(const BakeTile& tile,

@@ -43,6 +43,7 @@ class TilePainter {
   struct TileWork;
 
   void MakeViews();
+  void ReleaseImages() const;
   bool IsWanted(const BakeTile& tile,
                 const std::vector<char>& only_faces) const;
   BakeReport Total() const;

@@ -20,6 +20,11 @@ double Peak(const ReconstructOptions& options, const SceneSize& size) {
   return EstimateMemory(options, size).PeakMb();
 }
 
+MemoryEstimate Streamed(const ReconstructOptions& options,
+                        const SceneSize& size) {
+  return EstimateMemory(options, size, ImagePlace::kFile);
+}
+
 // Whatever makes a run larger makes the estimate larger, never smaller.
 TEST(MemoryEstimate, GrowsWithTheScene) {
   const ReconstructOptions options;
@@ -60,26 +65,40 @@ TEST(MemoryEstimate, FollowsTheOptions) {
 
 // Breaks if a budget changes what it does not have to, promises what the
 // estimate denies, or lets a run start that does not fit.
-TEST(FitIntoMemory, SavesOnlyWhatItMustAndRefusesTheRest) {
-  const auto trace_after = [](double limit_mb) {
-    ReconstructOptions options;
-    options.atlas.texel_size_m = 0.01;  // images decide
-    options.max_memory_gb = limit_mb / 1024;
-    FitIntoMemory(Room(), &options);
-    EXPECT_TRUE(limit_mb == 0 || Peak(options, Room()) <= limit_mb);
-    return options.photometric.solver.trace_rms_grey;
-  };
+TEST(FitIntoMemory, UsesAFileOnlyIfItMustAndRefusesTheRest) {
   ReconstructOptions options;
-  options.atlas.texel_size_m = 0.01;
+  options.atlas.texel_size_m = 0.01;  // images decide
+  const auto place_within = [&](double limit_mb) {
+    options.max_memory_gb = limit_mb / 1024;
+    return FitIntoMemory(options, Room());
+  };
   const double full = Peak(options, Room());
-  options.photometric.solver.trace_rms_grey = false;
-  const double least = Peak(options, Room());
+  const double least = Streamed(options, Room()).PeakMb();
   EXPECT_LT(least, full);
-  EXPECT_TRUE(trace_after(0));
-  EXPECT_TRUE(trace_after(full + 1));
-  EXPECT_FALSE(trace_after(full - 1));
-  EXPECT_FALSE(trace_after(least + 1));
-  EXPECT_THROW(trace_after(least - 1), OptionsError);
+  EXPECT_EQ(place_within(0), ImagePlace::kMemory);
+  EXPECT_EQ(place_within(full + 1), ImagePlace::kMemory);
+  EXPECT_EQ(place_within(full - 1), ImagePlace::kFile);
+  EXPECT_EQ(place_within(least + 1), ImagePlace::kFile);
+  EXPECT_THROW(place_within(least - 1), OptionsError);
+}
+
+// What a file saves are the images: without them keyframes cost no more than
+// what a tile of the texture sees of them. Breaks if phases that read all of
+// them at once are promised to do without.
+TEST(FitIntoMemory, AFileHoldsTheImages) {
+  ReconstructOptions options;
+  SceneSize many = Room();
+  many.keyframes *= 10;
+  options.photometric.stride = 32;  // observations do not decide
+  const MemoryEstimate in_memory = EstimateMemory(options, many);
+  const MemoryEstimate in_file = Streamed(options, many);
+  EXPECT_LT(in_file.PeakMb(), in_memory.PeakMb() / 4);
+  EXPECT_EQ(in_memory.file_mb, 0);
+  EXPECT_GT(in_file.file_mb, in_memory.PeakMb() / 2);
+  EXPECT_THAT(DescribePlan(many, in_file, 0), HasSubstr("in a scratch file"));
+  options.photometric.schedule = "10x[C; Phi; T+F]";
+  EXPECT_GT(Streamed(options, many).photometric_mb,
+            in_file.photometric_mb + 1000);
 }
 
 // Nothing overflows and nothing is negative at the ends of the range.
