@@ -42,10 +42,12 @@ DEFINE_string(to_stage, "export", "last stage to run");
 DEFINE_int32(threads, 0, "threads to use, 0 = one a core");
 DEFINE_uint64(seed, 0, "recorded; nothing in the pipeline is random today");
 DEFINE_bool(previews, true, "draw previews/*.png");
-DEFINE_double(max_memory_gb,
-              facet::ReconstructOptions().max_memory_gb,
-              "save memory where possible and refuse what the plan expects to "
-              "need more, 0 = no limit; the model does not depend on it");
+DEFINE_double(
+    max_memory_gb,
+    facet::ReconstructOptions().max_memory_gb,
+    "hold images in a scratch file in the run folder if the plan "
+    "expects to need more, and refuse what needs more even so, 0 = no "
+    "limit; no result depends on it");
 DEFINE_bool(trace_states,
             SolverConfig().trace_states,
             "keep poses and planes after every phase (trace_states.bin), from "

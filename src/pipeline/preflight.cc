@@ -22,6 +22,7 @@ constexpr double kColorBytes = 3, kDepthBytes = 2;  // a pixel
 constexpr double kLumaBytes = 4, kSmoothBytes = 4;  // while optimising
 constexpr double kDrawingMb = 130, kBytesPerDrawnFace = 100;
 constexpr double kSolverMb = 180;
+constexpr double kBytesPerPair = 1150;  // of keyframes: 6 x 6 blocks, 4 copies
 constexpr double kBytesPerSampledTexel = 100, kBytesPerObservation = 11;
 constexpr double kBytesPerAtlasTexel = 150;
 constexpr double kSeenShare = 0.15;  // of the keyframes see a texel
@@ -87,6 +88,7 @@ MemoryEstimate EstimateMemory(const ReconstructOptions& options,
   const double texel = options.atlas.texel_size_m;
   const double texels = size.area_m2 / (texel * texel);
   const double views = std::max(1.0, kSeenShare * size.keyframes);
+  const double pairs = std::pow(static_cast<double>(size.keyframes), 2);
   double sampled = texels / std::max(1, p.stride * p.stride);
   if (p.stride == 0) {
     sampled = std::min(sampled, p.max_observations / views);
@@ -96,7 +98,7 @@ MemoryEstimate EstimateMemory(const ReconstructOptions& options,
   estimate.mesh_mb = kBaseMb + kBytesPerFace * size.faces / kMb + images_mb;
   estimate.drawing_mb = kDrawingMb + kBytesPerDrawnFace * size.faces / kMb;
   estimate.photometric_mb =
-      kept + images_mb + kSolverMb + floats_mb +
+      kept + images_mb + kSolverMb + floats_mb + kBytesPerPair * pairs / kMb +
       sampled * (kBytesPerSampledTexel + kBytesPerObservation * views) / kMb;
   estimate.export_mb = kept + painted_mb + kBytesPerAtlasTexel * texels / kMb;
   if (place == ImagePlace::kFile) estimate.file_mb = all_mb + all_floats_mb;

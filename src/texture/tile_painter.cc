@@ -20,7 +20,7 @@ constexpr size_t kBlock = ColorSums::kBlock;
 
 // Neighbours read the same parts of the same images: their memory is given back
 // after so many tiles.
-constexpr size_t kTilesPerRelease = 32;
+constexpr size_t kTilesPerRelease = 8;
 
 // Which texels of a tile any keyframe sees by the strict tests.
 std::vector<uint64_t> SeenWell(const BakeTile& tile,

@@ -172,6 +172,29 @@ TEST(CliReconstruct, TwoRunsAndAnyNumberOfThreadsAgree) {
   ExpectSameModel(dir / "one", Fixture("run"));
 }
 
+// Breaks if where images are held shows in any result. A limit just below what
+// the plan expects puts them into a file.
+TEST(CliReconstruct, ImagesInAFileChangeNothing) {
+  const TempDir dir;
+  const std::string every = "--keyframe_window=1";
+  ExpectSuccess(Reconstruct(dir / "memory", {every}));
+  const json before = ReadJson(dir / "memory/report.json")["memory"];
+  EXPECT_EQ(before["images"], "memory");
+  const double limit_gb = (before["estimate_mb"].get<double>() - 0.1) / 1024;
+  for (const char* threads : {"1", "3"}) {
+    const std::string run = dir / threads;
+    ExpectSuccess(Reconstruct(run,
+                              {every,
+                               std::string("--threads=") + threads,
+                               "--max_memory_gb=" + std::to_string(limit_gb)}));
+    const json memory = ReadJson(run + "/report.json")["memory"];
+    EXPECT_EQ(memory["images"], "file");
+    EXPECT_GT(memory["file_mb"], 0);
+    ExpectSameModel(run, dir / "memory");
+    ExpectNoPartialFile(run);
+  }
+}
+
 // flags.txt alone brings the run back, also when it holds a profile.
 TEST(CliReconstruct, FlagsFileReproducesTheRun) {
   const TempDir dir;
