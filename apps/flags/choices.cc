@@ -40,6 +40,7 @@ std::vector<FlagChoices> MakeTable() {
       {"plane_iterations", {}, true},
       {"joint_iterations", {}, true},
       {"joint_hessian_every", {}, true},
+      {"active_tolerance", {}, true},
       {"stop_decrease", {}, true},
       {"profile", {"default", "paper"}},
       {"simplify_stop", {"budget", "counts"}},

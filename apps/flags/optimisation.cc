@@ -95,6 +95,11 @@ DEFINE_int32(joint_iterations,
 DEFINE_int32(joint_hessian_every,
              SolverConfig().joint_hessian_every,
              "joint solves build the Hessian anew every so many iterations");
+DEFINE_double(active_tolerance,
+              SolverConfig().active_tolerance,
+              "separate solves leave out planes and keyframes that no longer "
+              "move: whose cost the last solve lowered by at most this share; "
+              "0 = none");
 
 namespace facet {
 
@@ -138,6 +143,7 @@ void OptimisationOptionsFromFlags(PhotometricOptions* options) {
   p.solver.max_plane_iterations = FLAGS_plane_iterations;
   p.solver.max_joint_iterations = FLAGS_joint_iterations;
   p.solver.joint_hessian_every = FLAGS_joint_hessian_every;
+  p.solver.active_tolerance = FLAGS_active_tolerance;
 }
 
 }  // namespace facet

@@ -261,6 +261,7 @@ void CheckNumbers() {
       {"plane_iterations", 1, 10000},
       {"joint_iterations", 1, 10000},
       {"joint_hessian_every", 1, 10000},
+      {"active_tolerance", 0, 1},
       {"lambda3", 0},
       {"geometry_iterations", 1, 10000},
       {"geometry_band", 0, kMax, true},

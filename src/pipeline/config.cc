@@ -87,6 +87,7 @@ json PhotometricSettings(const ReconstructOptions& o) {
       {"max_pose_iterations", p.solver.max_pose_iterations},
       {"max_joint_iterations", p.solver.max_joint_iterations},
       {"joint_hessian_every", p.solver.joint_hessian_every},
+      {"active_tolerance", p.solver.active_tolerance},
       {"plane", static_cast<int>(p.formulation.plane)},
       {"manifold", static_cast<int>(p.formulation.manifold)},
       {"sampling", static_cast<int>(p.formulation.sampling)},

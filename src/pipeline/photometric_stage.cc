@@ -48,6 +48,13 @@ std::string PhaseLine(const std::string& round,
   return line;
 }
 
+// Shown only where something rests: by default nothing does.
+std::string RestText(const PhaseSummary& phase) {
+  if (phase.resting == 0) return "";
+  return "  " + std::to_string(phase.resting) + " of " +
+         std::to_string(phase.resting + phase.problems) + " rest";
+}
+
 // On fewer pixels a texture says nothing.
 constexpr int kMinLevelPx = 24;
 
@@ -218,7 +225,8 @@ void RunLevel(const TextureProblem& problem,
                         weights.lambda1,
                         weights.lambda2,
                         row.phase.accepted ? "accepted" : "undone",
-                        wall_s + row.wall_s));
+                        wall_s + row.wall_s) +
+              RestText(row.phase));
       },
       state);
   for (TraceRow& row : part.rows) {

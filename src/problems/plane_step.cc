@@ -12,6 +12,7 @@
 #include "costs/plane_moment.h"
 #include "costs/plane_photometric_cost.h"
 #include "problems/reference_blocks.h"
+#include "problems/rest.h"
 #include "problems/term.h"
 #include "util/parallel_for.h"
 
@@ -91,11 +92,15 @@ void SolvePlanes(const TextureProblem& problem,
   if (memory->plane_radius.size() != num_planes) {
     memory->plane_radius.assign(num_planes, 1e4);
   }
+  if (memory->plane_rest.size() != num_planes) {
+    memory->plane_rest.assign(num_planes, kAwake);
+  }
   const std::vector<PhotoChannel> channels =
       MakePhotoChannels(problem, *state, PointsAt::kMesh);
   const double photo_weight = weights.texel_weight / problem.NumChannels();
   const TermBlocks terms(problem, weights);
   std::vector<int> iterations(num_planes, 0), reverted(num_planes, 0);
+  std::vector<int> resting(num_planes, 0);
   std::vector<double> cost_start(num_planes, 0.0), cost_end(num_planes, 0.0);
 
   ParallelFor(0, num_planes, [&](size_t j) {
@@ -137,6 +142,12 @@ void SolvePlanes(const TextureProblem& problem,
         plane);
     terms.AddPlane(static_cast<int>(j), state, &ceres_problem);
     const double cost_before = Cost(&ceres_problem);
+    double& rest = memory->plane_rest[j];
+    if (Rests(rest, cost_before, config.active_tolerance)) {
+      cost_start[j] = cost_end[j] = 2 * cost_before;
+      resting[j] = 1;
+      return;
+    }
     ceres::Solver::Summary solved;
     ceres::Solve(PlaneSolverOptions(config, memory->plane_radius[j]),
                  &ceres_problem,
@@ -149,10 +160,13 @@ void SolvePlanes(const TextureProblem& problem,
           std::clamp(solved.iterations.back().trust_region_radius, 1e-2, 1e8);
     }
     LimitPlaneStep(config, before, plane);
-    if (!(Cost(&ceres_problem) <= cost_before)) {
+    double cost = Cost(&ceres_problem);
+    if (!(cost <= cost_before)) {
       Eigen::Map<Eigen::Vector4d>(plane, 4) = before;
+      cost = cost_before;
       reverted[j] = 1;
     }
+    rest = RestAfter(solved, cost_before, cost, config.active_tolerance);
     for (const PlaneSegment& segment : segments) {
       problem.ReleaseImages(segment.keyframe);
     }
@@ -161,6 +175,7 @@ void SolvePlanes(const TextureProblem& problem,
     summary->problems += iterations[j] > 0 ? 1 : 0;
     summary->iterations += iterations[j];
     summary->reverted += reverted[j];
+    summary->resting += resting[j];
     summary->cost_before += cost_start[j];
     summary->cost_after += cost_end[j];
   }

@@ -14,6 +14,7 @@
 #include "costs/warp_offset.h"
 #include "problems/cell_bins.h"
 #include "problems/reference_blocks.h"
+#include "problems/rest.h"
 #include "problems/term.h"
 #include "util/parallel_for.h"
 
@@ -211,7 +212,7 @@ bool WarpIsInvertible(const WarpLattice& lattice, const double* f) {
 struct FrameResult {
   int iterations = 0;
   double cost_before = 0, cost_after = 0;
-  bool reverted = false;
+  bool reverted = false, resting = false;
 };
 
 FrameResult SolveFrame(const TextureProblem& problem,
@@ -222,6 +223,7 @@ FrameResult SolveFrame(const TextureProblem& problem,
                        const std::vector<PhotoChannel>& channels,
                        int keyframe,
                        double* radius,
+                       double* rest,
                        ReconState* state) {
   const size_t num_warp =
       2 * static_cast<size_t>(problem.lattice.NumVertices());
@@ -233,11 +235,16 @@ FrameResult SolveFrame(const TextureProblem& problem,
   FrameProblem frame_problem(
       problem, weights, terms, blocks, channels, keyframe, state);
   const double cost_before = frame_problem.Cost();
+  FrameResult result;
+  if (Rests(*rest, cost_before, config.active_tolerance)) {
+    result.cost_before = result.cost_after = 2 * cost_before;
+    result.resting = true;
+    return result;
+  }
   ceres::Solver::Summary solved;
   ceres::Solve(FrameSolverOptions(config, frame_problem.with_warp(), *radius),
                frame_problem.ceres_problem(),
                &solved);
-  FrameResult result;
   result.iterations = static_cast<int>(solved.iterations.size());
   result.cost_before = 2 * solved.initial_cost;
   result.cost_after = 2 * solved.final_cost;
@@ -246,12 +253,14 @@ FrameResult SolveFrame(const TextureProblem& problem,
         std::clamp(solved.iterations.back().trust_region_radius, 1e-2, 1e8);
   }
   LimitFrameStep(config, pose_before, warp_before, pose, warp);
-  if (!(frame_problem.Cost() <= cost_before) ||
-      !WarpIsInvertible(problem.lattice, warp)) {
+  double cost = frame_problem.Cost();
+  if (!(cost <= cost_before) || !WarpIsInvertible(problem.lattice, warp)) {
     std::copy(pose_before.begin(), pose_before.end(), pose);
     std::copy(warp_before.begin(), warp_before.end(), warp);
+    cost = cost_before;
     result.reverted = true;
   }
+  *rest = RestAfter(solved, cost_before, cost, config.active_tolerance);
   return result;
 }
 
@@ -268,6 +277,10 @@ void SolvePosesAndWarps(const TextureProblem& problem,
   if (memory->frame_radius.size() != num_frames) {
     memory->frame_radius.assign(num_frames, 1e4);
   }
+  std::vector<double>& rest = memory->frame_rest[blocks == kPoses   ? 0
+                                                 : blocks == kWarps ? 1
+                                                                    : 2];
+  if (rest.size() != num_frames) rest.assign(num_frames, kAwake);
   const std::vector<PhotoChannel> channels =
       MakePhotoChannels(problem, *state, PointsAt::kPlane);
   const TermBlocks terms(problem, weights);
@@ -287,6 +300,7 @@ void SolvePosesAndWarps(const TextureProblem& problem,
                             channels,
                             static_cast<int>(k),
                             &memory->frame_radius[k],
+                            &rest[k],
                             state);
     problem.ReleaseImages(static_cast<int>(k));
   });
@@ -294,6 +308,7 @@ void SolvePosesAndWarps(const TextureProblem& problem,
     summary->problems += result.iterations > 0 ? 1 : 0;
     summary->iterations += result.iterations;
     summary->reverted += result.reverted ? 1 : 0;
+    summary->resting += result.resting ? 1 : 0;
     summary->cost_before += result.cost_before;
     summary->cost_after += result.cost_after;
   }

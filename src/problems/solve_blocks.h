@@ -13,6 +13,7 @@
 // A phase that raises the objective E_tex + E_prior is rolled back and marked.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,11 @@ struct SolverConfig {
   bool fix_first_pose = false;  // keyframe 0 does not move
   int max_plane_iterations = 3;
   int max_pose_iterations = 5;
+  // Planes and keyframes that no longer move are left out of separate solves:
+  // those whose last solve lowered their own cost by at most this share of it,
+  // and whose cost since then has changed by at most ten times that share. >=
+  // 0; 0 = all are solved in every phase. Joint solves always move everything.
+  double active_tolerance = 0;
   // T+F: poses first, then warps, instead of both in one problem a keyframe.
   bool decouple_warps = false;
   JointMethod joint_method = JointMethod::kConsensus;
@@ -71,12 +77,18 @@ struct SolverConfig {
   size_t min_frame_observations = 200;
 };
 
-// Trust-region radii carried from one solve of a block to the next; sized on
-// first use. That of the joint solve starts small: its Hessian promises more
-// than there is, steps of a radius of 1e4 were refused three in five times.
+// What one solve of a block hands on to the next; sized on first use. For one
+// TextureProblem with its weights: start anew where these change.
 struct SolverMemory {
+  // Trust-region radii.
   std::vector<double> plane_radius, frame_radius;
+  // The joint one starts small: its Hessian promises more than there is, steps
+  // of a radius of 1e4 were refused three in five times.
   double joint_radius = 100, explicit_radius = 1e4;
+  // Costs that planes and keyframes rest at (problems/rest.h); of keyframes
+  // apart for {T}, {F} and {T, F}, which have different costs.
+  std::vector<double> plane_rest;
+  std::array<std::vector<double>, 3> frame_rest;
 };
 
 struct PhaseSummary {
@@ -85,8 +97,10 @@ struct PhaseSummary {
   int problems = 0;      // Ceres problems solved
   int iterations = 0;    // summed over them
   int reverted = 0;      // problems whose result was worse and undone
+  int resting = 0;       // problems left out, see active_tolerance
   // Twice Ceres's own cost at start and end, summed over the problems: the
-  // terms of the objective that the phase can change (tested).
+  // terms of the objective that the phase can change (tested). Resting problems
+  // add the cost that they were found with to both.
   double cost_before = 0, cost_after = 0;
   double wall_s = 0, cpu_s = 0;
   EnergyTerms before, after;

@@ -21,7 +21,7 @@ std::string CsvLine(int level,
       line,
       sizeof(line),
       "%d,%d,%s,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.6f,%zu,%zu,%zu,%zu,%d,"
-      "%d,%d,%d,%.3f,%.3f\n",
+      "%d,%d,%d,%.3f,%.3f,%d\n",
       level,
       round,
       phase.c_str(),
@@ -42,7 +42,8 @@ std::string CsvLine(int level,
       summary ? summary->iterations : 0,
       summary ? summary->reverted : 0,
       wall_s,
-      cpu_s);
+      cpu_s,
+      summary ? summary->resting : 0);
   return line;
 }
 
@@ -112,7 +113,7 @@ std::string TraceCsv(const Trace& trace) {
       "level,round,phase,E_c,E_p_m2,E_s_px2,E_tex,E_prior,E_depth,E_terms,rms_"
       "grey_255,"
       "observations,clamped,behind,lost,accepted,problems,iterations,reverted,"
-      "wall_s,cpu_s\n";
+      "wall_s,cpu_s,resting\n";
   csv += CsvLine(0, 0, "initial", trace.initial, nullptr, 0, 0);
   for (const TraceRow& row : trace.rows) {
     csv += CsvLine(row.level,

@@ -68,6 +68,8 @@ TEST(CliOptions, NumbersOutOfRange) {
                            "--lambda2=nan",
                            "--gauge_sigma_mm=0",
                            "--pose_iterations=0",
+                           "--active_tolerance=-1",
+                           "--active_tolerance=nan",
                            "--lambda3=-1",
                            "--geometry_iterations=0",
                            "--geometry_band=0",
