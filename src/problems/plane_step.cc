@@ -12,7 +12,6 @@
 #include "costs/plane_moment.h"
 #include "costs/plane_photometric_cost.h"
 #include "problems/reference_blocks.h"
-#include "problems/rest.h"
 #include "problems/term.h"
 #include "util/parallel_for.h"
 
@@ -93,7 +92,7 @@ void SolvePlanes(const TextureProblem& problem,
     memory->plane_radius.assign(num_planes, 1e4);
   }
   if (memory->plane_rest.size() != num_planes) {
-    memory->plane_rest.assign(num_planes, kAwake);
+    memory->plane_rest.assign(num_planes, RestMemory());
   }
   const std::vector<PhotoChannel> channels =
       MakePhotoChannels(problem, *state, PointsAt::kMesh);
@@ -142,8 +141,8 @@ void SolvePlanes(const TextureProblem& problem,
         plane);
     terms.AddPlane(static_cast<int>(j), state, &ceres_problem);
     const double cost_before = Cost(&ceres_problem);
-    double& rest = memory->plane_rest[j];
-    if (Rests(rest, cost_before, config.active_tolerance)) {
+    RestMemory& rest = memory->plane_rest[j];
+    if (Rests(cost_before, config.active_tolerance, &rest)) {
       cost_start[j] = cost_end[j] = 2 * cost_before;
       resting[j] = 1;
       return;

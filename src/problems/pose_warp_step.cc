@@ -14,7 +14,6 @@
 #include "costs/warp_offset.h"
 #include "problems/cell_bins.h"
 #include "problems/reference_blocks.h"
-#include "problems/rest.h"
 #include "problems/term.h"
 #include "util/parallel_for.h"
 
@@ -223,7 +222,7 @@ FrameResult SolveFrame(const TextureProblem& problem,
                        const std::vector<PhotoChannel>& channels,
                        int keyframe,
                        double* radius,
-                       double* rest,
+                       RestMemory* rest,
                        ReconState* state) {
   const size_t num_warp =
       2 * static_cast<size_t>(problem.lattice.NumVertices());
@@ -236,7 +235,7 @@ FrameResult SolveFrame(const TextureProblem& problem,
       problem, weights, terms, blocks, channels, keyframe, state);
   const double cost_before = frame_problem.Cost();
   FrameResult result;
-  if (Rests(*rest, cost_before, config.active_tolerance)) {
+  if (Rests(cost_before, config.active_tolerance, rest)) {
     result.cost_before = result.cost_after = 2 * cost_before;
     result.resting = true;
     return result;
@@ -277,10 +276,10 @@ void SolvePosesAndWarps(const TextureProblem& problem,
   if (memory->frame_radius.size() != num_frames) {
     memory->frame_radius.assign(num_frames, 1e4);
   }
-  std::vector<double>& rest = memory->frame_rest[blocks == kPoses   ? 0
-                                                 : blocks == kWarps ? 1
-                                                                    : 2];
-  if (rest.size() != num_frames) rest.assign(num_frames, kAwake);
+  std::vector<RestMemory>& rest = memory->frame_rest[blocks == kPoses   ? 0
+                                                     : blocks == kWarps ? 1
+                                                                        : 2];
+  if (rest.size() != num_frames) rest.assign(num_frames, RestMemory());
   const std::vector<PhotoChannel> channels =
       MakePhotoChannels(problem, *state, PointsAt::kPlane);
   const TermBlocks terms(problem, weights);

@@ -88,7 +88,7 @@ PhaseSummary SolveBlocks(const TextureProblem& problem,
     summary.accepted = false;
     // Costs of a state that is no more.
     memory->plane_rest.clear();
-    for (std::vector<double>& rest : memory->frame_rest) rest.clear();
+    for (std::vector<RestMemory>& rest : memory->frame_rest) rest.clear();
   }
   summary.wall_s = watch.WallSeconds();
   summary.cpu_s = watch.CpuSecondsSince();

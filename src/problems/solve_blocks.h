@@ -19,6 +19,7 @@
 
 #include "problems/energy.h"
 #include "problems/joint_method.h"
+#include "problems/rest.h"
 #include "problems/texture_problem.h"
 
 namespace facet {
@@ -47,8 +48,8 @@ struct SolverConfig {
   int max_pose_iterations = 5;
   // Planes and keyframes that no longer move are left out of separate solves:
   // those whose last solve lowered their own cost by at most this share of it,
-  // and whose cost since then has changed by at most ten times that share. >=
-  // 0; 0 = all are solved in every phase. Joint solves always move everything.
+  // for some phases or until their cost changes (problems/rest.h). >= 0; 0 =
+  // all are solved in every phase. Joint solves always move everything.
   double active_tolerance = 0;
   // T+F: poses first, then warps, instead of both in one problem a keyframe.
   bool decouple_warps = false;
@@ -85,10 +86,10 @@ struct SolverMemory {
   // The joint one starts small: its Hessian promises more than there is, steps
   // of a radius of 1e4 were refused three in five times.
   double joint_radius = 100, explicit_radius = 1e4;
-  // Costs that planes and keyframes rest at (problems/rest.h); of keyframes
-  // apart for {T}, {F} and {T, F}, which have different costs.
-  std::vector<double> plane_rest;
-  std::array<std::vector<double>, 3> frame_rest;
+  // Who may rest; of keyframes apart for {T}, {F} and {T, F}, which have
+  // different costs.
+  std::vector<RestMemory> plane_rest;
+  std::array<std::vector<RestMemory>, 3> frame_rest;
 };
 
 struct PhaseSummary {

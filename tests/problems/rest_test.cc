@@ -54,12 +54,13 @@ class Rest : public testing::Test {
     return EvaluateEnergy(scene_.problem, weights_, state_).Objective();
   }
 
-  // Solves `blocks` alone until they all rest.
+  // Solves `blocks` alone until they may all rest.
   void Settle(unsigned blocks) {
-    for (int i = 0; i < 50; ++i) {
-      if (Solve(blocks).problems == 0) return;
-    }
-    FAIL() << BlockSetName(blocks) << " does not come to rest";
+    const double tolerance = config_.active_tolerance;
+    config_.active_tolerance = 0;
+    for (int i = 0; i < 30; ++i) Solve(blocks);
+    config_.active_tolerance = tolerance;
+    Solve(blocks);
   }
 
   TinyScene scene_;
@@ -71,8 +72,11 @@ class Rest : public testing::Test {
 
 // Breaks if the tolerance 0 is not an exact off, even at costs of 0.
 TEST_F(Rest, NothingRestsWithoutATolerance) {
-  EXPECT_FALSE(Rests(0, 0, 0));
-  EXPECT_FALSE(Rests(1, 1, 0));
+  RestMemory memory;
+  for (memory.cost = 0; memory.cost < 2; ++memory.cost) {
+    EXPECT_FALSE(Rests(memory.cost, 0, &memory));
+    EXPECT_TRUE(Rests(memory.cost, 1e-9, &memory));
+  }
   config_.active_tolerance = 0;
   for (const PhaseSummary& phase : Alternate(12)) {
     EXPECT_EQ(phase.resting, 0) << phase.blocks;
@@ -138,23 +142,31 @@ TEST_F(Rest, AKeyframeThatIsMovedWakesUpAndReturns) {
   for (int k = 0; k < scene_.problem.NumKeyframes(); ++k) {
     const Pose a = settled.CamFromWorld(k), b = state_.CamFromWorld(k);
     EXPECT_LT((a.CenterInSource() - b.CenterInSource()).norm(),
-              k == 3 ? 0.001 : 1e-12);
+              k == 3 ? 0.001 : 1e-6);
   }
 }
 
 // Costs are compared with those after the last solve: breaks if with those of
 // the last phase, where steps below the tolerance would never wake anybody.
 TEST_F(Rest, SmallChangesAddUp) {
-  Settle(kPlanes);
-  const double cost = 2 * memory_.plane_rest[0];
-  ASSERT_GT(cost, 0);
-  int phases = 0;
-  for (; phases < 100; ++phases) {
-    for (float& color : state_.colors) color += 1e-4f;
-    if (Solve(kPlanes).problems > 0) break;
+  for (const double sign : {-1.0, 1.0}) {
+    RestMemory memory;
+    memory.cost = 5;
+    const double change = sign * 0.6 * kWakeFactor * 1e-3;
+    EXPECT_TRUE(Rests(5 * (1 + change), 1e-3, &memory));
+    EXPECT_FALSE(Rests(5 * (1 + 2 * change), 1e-3, &memory));
   }
-  EXPECT_GT(phases, 1);
-  EXPECT_LT(phases, 100);
+}
+
+// What all keyframes share is found by many small gains: breaks if what gains
+// little is never looked at again.
+TEST_F(Rest, NothingRestsForLong) {
+  Settle(kPlanes);
+  memory_ = SolverMemory();
+  for (int round = 0; round < 3; ++round) {
+    EXPECT_EQ(Solve(kPlanes).problems, scene_.problem.NumPlanes());
+    for (int i = 0; i < kMaxRest; ++i) EXPECT_EQ(Solve(kPlanes).problems, 0);
+  }
 }
 
 // {T} and {F} of one keyframe have costs of their own: breaks if one's rest is
@@ -186,15 +198,18 @@ TEST_F(Rest, ARolledBackPhaseWakesAll) {
 TEST_F(Rest, FailedSolvesStayAwake) {
   ceres::Solver::Summary solved;
   solved.termination_type = ceres::NO_CONVERGENCE;
+  const auto rest = [&](double cost) {
+    return RestAfter(solved, 1, cost, 1e-3).cost;
+  };
   solved.initial_cost = solved.final_cost = 1;
-  EXPECT_EQ(RestAfter(solved, 1, 1, 1e-3), kAwake);
+  EXPECT_LT(rest(1), 0);
   solved.termination_type = ceres::CONVERGENCE;
-  EXPECT_EQ(RestAfter(solved, 1, 1, 1e-3), 1);
+  EXPECT_EQ(rest(1), 1);
   solved.termination_type = ceres::NO_CONVERGENCE;
   solved.final_cost = 0.5;
-  EXPECT_EQ(RestAfter(solved, 1, 0.5, 1e-3), kAwake);
-  EXPECT_EQ(RestAfter(solved, 1, 0.9999, 1e-3), 0.9999);
-  EXPECT_EQ(RestAfter(solved, 1, 1, 1e-3), 1);  // undone: it cannot follow
+  EXPECT_LT(rest(0.5), 0);
+  EXPECT_EQ(rest(0.9999), 0.9999);
+  EXPECT_EQ(rest(1), 1);  // undone: it cannot follow
 }
 
 // What the saving costs: breaks if blocks fall asleep on their way.
@@ -212,7 +227,7 @@ TEST_F(Rest, EnergiesAtTheEndAreAboutTheSame) {
     resting += s.resting;
     problems += s.problems;
   }
-  EXPECT_GT(resting, problems / 4);
+  EXPECT_GT(resting, problems / 8);
   EXPECT_LT(Objective() - without, 0.02 * (first - without));
 }
 
