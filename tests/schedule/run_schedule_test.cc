@@ -133,13 +133,14 @@ TEST(RunSchedule, StopsWhenThereIsNothingToGain) {
 }
 
 // Breaks if a column is added to the lines but not to the header, or if a
-// rolled-back phase does not show.
+// rolled-back phase or resting problems do not show.
 TEST(TraceCsv, EveryLineHasTheColumnsOfTheHeader) {
   Trace trace;
   trace.rows.resize(2);
   trace.rows[0].phase.blocks = "T+F";
   trace.rows[1].phase.blocks = "Phi";
   trace.rows[1].phase.accepted = false;
+  trace.rows[1].phase.resting = 17;
   std::istringstream csv(TraceCsv(trace));
   std::vector<std::vector<std::string>> cells;
   for (std::string line; std::getline(csv, line);) {
@@ -163,6 +164,11 @@ TEST(TraceCsv, EveryLineHasTheColumnsOfTheHeader) {
   EXPECT_EQ(cells[1][accepted], "1");
   EXPECT_EQ(cells[2][accepted], "1");
   EXPECT_EQ(cells[3][accepted], "0");
+  const size_t resting = column("resting");
+  ASSERT_LT(resting, cells[0].size());
+  EXPECT_EQ(cells[1][resting], "0");
+  EXPECT_EQ(cells[2][resting], "0");
+  EXPECT_EQ(cells[3][resting], "17");
 }
 
 }  // namespace
