@@ -39,16 +39,12 @@ void ParallelFor(size_t begin,
                  const std::function<void(size_t)>& body,
                  size_t grain) {
   if (begin >= end) return;
-  // Many loops are short. The automatic partitioner leaves pieces so large that
-  // one thread waits for the last of another.
-  constexpr size_t kPieces = 256;
-  const size_t most = std::max(grain, (end - begin) / kPieces);
-  tbb::parallel_for(
-      tbb::blocked_range<size_t>(begin, end, most),
-      [&](const tbb::blocked_range<size_t>& range) {
-        for (size_t i = range.begin(); i < range.end(); ++i) body(i);
-      },
-      tbb::simple_partitioner());
+  tbb::parallel_for(tbb::blocked_range<size_t>(begin, end, grain),
+                    [&](const tbb::blocked_range<size_t>& range) {
+                      for (size_t i = range.begin(); i < range.end(); ++i) {
+                        body(i);
+                      }
+                    });
 }
 
 void ParallelForChunks(size_t begin,
