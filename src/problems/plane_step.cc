@@ -102,6 +102,11 @@ void SolvePlanes(const TextureProblem& problem,
   std::vector<int> resting(num_planes, 0);
   std::vector<double> cost_start(num_planes, 0.0), cost_end(num_planes, 0.0);
 
+  const auto release = [&](const std::vector<PlaneSegment>& segments) {
+    for (const PlaneSegment& segment : segments) {
+      problem.ReleaseImages(segment.keyframe);
+    }
+  };
   ParallelFor(0, num_planes, [&](size_t j) {
     const std::vector<PlaneSegment> segments =
         SegmentsOfPlane(problem, static_cast<int>(j));
@@ -145,6 +150,7 @@ void SolvePlanes(const TextureProblem& problem,
     if (Rests(cost_before, config.active_tolerance, &rest)) {
       cost_start[j] = cost_end[j] = 2 * cost_before;
       resting[j] = 1;
+      release(segments);
       return;
     }
     ceres::Solver::Summary solved;
@@ -166,9 +172,7 @@ void SolvePlanes(const TextureProblem& problem,
       reverted[j] = 1;
     }
     rest = RestAfter(solved, cost_before, cost, config.active_tolerance);
-    for (const PlaneSegment& segment : segments) {
-      problem.ReleaseImages(segment.keyframe);
-    }
+    release(segments);
   });
   for (size_t j = 0; j < num_planes; ++j) {
     summary->problems += iterations[j] > 0 ? 1 : 0;

@@ -259,15 +259,16 @@ void TilePainter::Weigh(const View& view, TileWork* work) const {
   const size_t n = work->ids.size();
   const float right = static_cast<float>(camera_.width - 1);
   const float bottom = static_cast<float>(camera_.height - 1);
-  const float per_px = options_.border_feather_px > 0
-                           ? 1 / static_cast<float>(options_.border_feather_px)
-                           : 1e9f;
+  const bool has_ramp = options_.border_feather_px > 0;
+  const float per_px =
+      has_ramp ? 1 / static_cast<float>(options_.border_feather_px) : 0.0f;
+  const float least = has_ramp ? 1e-3f : 1.0f;
   const float *u = work->colors.u, *v = work->colors.v;
   float* weight = work->weight;
   for (size_t j = 0; j < n; ++j) {
     const float border =
         std::min(std::min(u[j], right - u[j]), std::min(v[j], bottom - v[j]));
-    const float ramp = std::min(std::max(border * per_px, 1e-3f), 1.0f);
+    const float ramp = std::min(std::max(border * per_px, least), 1.0f);
     weight[j] *= border >= 0 ? ramp : 0.0f;
   }
   if (!has_powers_ && options_.best_view_power == 1) return;

@@ -185,24 +185,42 @@ bool FrameView::TestPlace(const SightBatch& batch, Lanes* lanes) const {
   return left != 0;
 }
 
-void FrameView::ReadDepth(const SightBatch& batch, Lanes* lanes) const {
-  const FloatPose pose = depth_from_world_;
-  const PixelFinder px = depth_px_;
-  const int stride = static_cast<int>(depth_.step1());
-  const bool has_depth = !depth_.empty();
-  for (int i = 0; i < batch.size; ++i) {
-    const float qx = batch.q[0][i], qy = batch.q[1][i], qz = batch.q[2][i];
-    const float z = pose.Z(qx, qy, qz), inverse_z = 1 / z;
-    const float u = px.U(pose.X(qx, qy, qz), inverse_z);
-    const float v = px.V(pose.Y(qx, qy, qz), inverse_z);
+void FrameView::FindPixels(const float* const points[3],
+                           int size,
+                           const FloatPose& pose,
+                           const PixelFinder& px,
+                           const cv::Mat& image,
+                           float min_z,
+                           float* z,
+                           int* pixel) {
+  const int row_step = static_cast<int>(image.step1());
+  const int column_step = image.channels();
+  const bool has_image = !image.empty();
+  for (int i = 0; i < size; ++i) {
+    const float x = points[0][i], y = points[1][i], w = points[2][i];
+    const float depth = pose.Z(x, y, w), inverse_z = 1 / depth;
+    const float u = px.U(pose.X(x, y, w), inverse_z);
+    const float v = px.V(pose.Y(x, y, w), inverse_z);
     // Compared as numbers: far outside, an int would overflow.
-    const bool inside = has_depth & (z > 0) & px.Contains(u, v, -0.49f);
+    const bool inside = has_image & (depth > min_z) & px.Contains(u, v, -0.49f);
     const float column = inside ? u + 0.5f : 0.0f;
     const float row = inside ? v + 0.5f : 0.0f;
-    const int pixel = static_cast<int>(row) * stride + static_cast<int>(column);
-    lanes->depth_z[i] = z;
-    lanes->depth_pixel[i] = inside ? pixel : -1;
+    const int at = static_cast<int>(row) * row_step +
+                   static_cast<int>(column) * column_step;
+    z[i] = depth;
+    pixel[i] = inside ? at : -1;
   }
+}
+
+void FrameView::ReadDepth(const SightBatch& batch, Lanes* lanes) const {
+  FindPixels(batch.q,
+             batch.size,
+             depth_from_world_,
+             depth_px_,
+             depth_,
+             0,
+             lanes->depth_z,
+             lanes->depth_pixel);
   const float* depth = depth_.ptr<float>();
   for (int i = 0; i < batch.size; ++i) {
     const int pixel = lanes->depth_pixel[i];
@@ -216,15 +234,14 @@ void FrameView::ReadDepth(const SightBatch& batch, Lanes* lanes) const {
 bool FrameView::TestSensorDepth(int size, Lanes* lanes) const {
   const bool needs_depth =
       options_.test_sensor_depth && !options_.allow_missing_depth;
-  const float least = static_cast<float>(options_.min_depth_tolerance_m);
-  const float most = options_.test_sensor_depth
-                         ? 0.0f
-                         : std::numeric_limits<float>::infinity();
+  // Without the test nothing disagrees.
+  const float least = options_.test_sensor_depth
+                          ? static_cast<float>(options_.min_depth_tolerance_m)
+                          : std::numeric_limits<float>::infinity();
   int left = 0;
   for (int i = 0; i < size; ++i) {
     const float measured = lanes->measured[i], z = lanes->depth_z[i];
-    const float tolerance =
-        std::max(std::max(least, 3 * DepthSigma(z) + 0.02f), most);
+    const float tolerance = std::max(least, 3 * DepthSigma(z) + 0.02f);
     const bool missing = !(measured > 0);
     const bool disagrees = !missing & (std::abs(measured - z) > tolerance);
     int sight = static_cast<int>(Sight::kVisible);
@@ -246,24 +263,14 @@ bool FrameView::TestSensorDepth(int size, Lanes* lanes) const {
 }
 
 void FrameView::ReadSurface(const SightBatch& batch, Lanes* lanes) const {
-  const FloatPose pose = color_from_world_;
-  const PixelFinder px = color_px_;
-  const int stride = static_cast<int>(surface_.step1());
-  const bool has_surface = !surface_.empty();
-  for (int i = 0; i < batch.size; ++i) {
-    const float x = batch.p[0][i], y = batch.p[1][i], z = batch.p[2][i];
-    const float depth = pose.Z(x, y, z), inverse_z = 1 / depth;
-    const float u = px.U(pose.X(x, y, z), inverse_z);
-    const float v = px.V(pose.Y(x, y, z), inverse_z);
-    const bool inside =
-        has_surface & (depth > kMinZ) & px.Contains(u, v, -0.49f);
-    const float column = inside ? u + 0.5f : 0.0f;
-    const float row = inside ? v + 0.5f : 0.0f;
-    const int pixel =
-        static_cast<int>(row) * stride + 2 * static_cast<int>(column);
-    lanes->surface_z[i] = depth;
-    lanes->surface_pixel[i] = inside ? pixel : -1;
-  }
+  FindPixels(batch.p,
+             batch.size,
+             color_from_world_,
+             color_px_,
+             surface_,
+             kMinZ,
+             lanes->surface_z,
+             lanes->surface_pixel);
   const float* surface = surface_.ptr<float>();
   for (int i = 0; i < batch.size; ++i) {
     const int pixel = lanes->surface_pixel[i];

@@ -111,18 +111,6 @@ class FrameView {
   const Eigen::Vector3f& center() const { return center_; }
 
  private:
-  struct Lanes;
-
-  void ReadMesh(const RayScene& scene,
-                const Pinhole& color,
-                const Pose& color_cam_from_world);
-  // The steps of Test(), on all points of a batch.
-  bool TestPlace(const SightBatch& batch, Lanes* lanes) const;
-  void ReadDepth(const SightBatch& batch, Lanes* lanes) const;
-  bool TestSensorDepth(int size, Lanes* lanes) const;
-  void ReadSurface(const SightBatch& batch, Lanes* lanes) const;
-  bool IsOccluded(const SightBatch& batch, int i, const Lanes& lanes) const;
-
   // Pinhole in float: a pixel is found to 1e-3, for most of the time of a test
   // goes into this.
   struct PixelFinder {
@@ -169,6 +157,28 @@ class FrameView {
       return r[6] * x + r[7] * y + r[8] * z + t[2];
     }
   };
+
+  struct Lanes;
+
+  void ReadMesh(const RayScene& scene,
+                const Pinhole& color,
+                const Pose& color_cam_from_world);
+  // Depths of points and the places of their nearest pixels in an image of
+  // floats, -1 outside of it and before min_z.
+  static void FindPixels(const float* const points[3],
+                         int size,
+                         const FloatPose& pose,
+                         const PixelFinder& px,
+                         const cv::Mat& image,
+                         float min_z,
+                         float* z,
+                         int* pixel);
+  // The steps of Test(), on all points of a batch.
+  bool TestPlace(const SightBatch& batch, Lanes* lanes) const;
+  void ReadDepth(const SightBatch& batch, Lanes* lanes) const;
+  bool TestSensorDepth(int size, Lanes* lanes) const;
+  void ReadSurface(const SightBatch& batch, Lanes* lanes) const;
+  bool IsOccluded(const SightBatch& batch, int i, const Lanes& lanes) const;
 
   const RayScene& scene_;
   VisibilityOptions options_;
