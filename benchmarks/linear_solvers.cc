@@ -4,10 +4,12 @@
 // Ceres's linear solvers on the two systems of facet:
 //
 //   camera  pose and warp of a keyframe (6 + 640 unknowns), compressed blocks
-//   joint   all poses and planes, rows as problems/joint_system.h hands them to
-//           Ceres: 3 over a plane and the poses that see it, 6 over a pose and
-//           all later ones. The numbers in it are random: time depends on the
-//           pattern only.
+//   joint   all poses and planes, rows as problems/joint_step.h hands them to
+//           Ceres: 3 over the offset of a plane that follows the poses, 6 over
+//           a pose and all later ones. The numbers in it are random: time
+//           depends on the pattern only.
+//   coupled the same with planes that do not follow: 3 rows over a plane and
+//           the poses that see it
 //
 // linear_ms is the time of one linear solve (wall; the best of the repetitions
 // of every problem by itself), cost the one reached.
@@ -155,7 +157,7 @@ struct JointSize {
 };
 
 // Tangent sizes as block sizes, so that no manifold is needed.
-void MeasureJoint(const JointSize& size, int repetitions) {
+void MeasureJoint(const JointSize& size, bool coupled, int repetitions) {
   for (const SolverChoice& choice : kChoices) {
     const LinearTime best = BestOf(repetitions, [&] {
       Random random(5);
@@ -169,7 +171,7 @@ void MeasureJoint(const JointSize& size, int repetitions) {
         std::vector<int> sizes = {3};
         const int first =
             static_cast<int>(random.Index(size.keyframes - size.seen_by + 1));
-        for (int k = first; k < first + size.seen_by; ++k) {
+        for (int k = first; coupled && k < first + size.seen_by; ++k) {
           blocks.push_back(poses[k].data());
           sizes.push_back(6);
         }
@@ -188,7 +190,7 @@ void MeasureJoint(const JointSize& size, int repetitions) {
       }
       return Solve(choice, &problem);
     });
-    Print("joint",
+    Print(coupled ? "coupled" : "joint",
           std::to_string(6 * size.keyframes + 3 * size.planes),
           choice.name,
           best);
@@ -205,10 +207,12 @@ int main(int argc, char** argv) {
   MeasureCameras(
       args.small ? MakeBenchScene({10000, 2}) : MakeBenchScene({400000, 4}),
       args.repetitions);
-  if (args.small) {
-    MeasureJoint({4, 3, 2}, 1);
-    return 0;
+  for (const bool coupled : {false, true}) {
+    if (args.small) {
+      MeasureJoint({4, 3, 2}, coupled, 1);
+      continue;
+    }
+    MeasureJoint({30, 40, 15}, coupled, args.repetitions);
+    MeasureJoint({100, 150, 30}, coupled, args.repetitions);
   }
-  MeasureJoint({30, 40, 15}, args.repetitions);
-  MeasureJoint({100, 150, 30}, args.repetitions);
 }

@@ -3,162 +3,29 @@
 #include "problems/joint_step.h"
 
 #include <ceres/cost_function.h>
-#include <ceres/evaluation_callback.h>
 #include <ceres/problem.h>
 #include <ceres/sized_cost_function.h>
 #include <ceres/solver.h>
 #include <glog/logging.h>
 
 #include <algorithm>
-#include <cmath>
+#include <memory>
 
-#include "costs/plane_manifold.h"
 #include "costs/se3_manifold.h"
 #include "problems/color_step.h"
+#include "problems/following_planes.h"
 #include "problems/gauge.h"
-#include "problems/joint_pass.h"
-#include "problems/joint_system.h"
-#include "problems/term.h"
+#include "problems/joint_evaluation.h"
 
 namespace facet {
 namespace {
 
-using RowMajor =
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-// Runs the pass whenever Ceres moves to a new point; the cost functions below
-// only read its results. The state is Ceres's parameter memory.
-class JointEvaluation : public ceres::EvaluationCallback {
- public:
-  JointEvaluation(const TextureProblem& problem,
-                  const EnergyWeights& weights,
-                  const SolverConfig& config,
-                  bool with_planes,
-                  const ReconState* state)
-      : problem_(problem),
-        weights_(weights),
-        config_(config),
-        own_share_(config.joint_method == JointMethod::kConsensus
-                       ? config.joint_own_share
-                       : 1.0),
-        common_share_(config.joint_method == JointMethod::kFrozen
-                          ? 0.0
-                          : config.joint_common_share),
-        with_planes_(with_planes),
-        state_(state) {}
-
-  void PrepareForEvaluation(bool evaluate_jacobians,
-                            bool new_evaluation_point) override {
-    if (new_evaluation_point) has_pass_ = has_system_ = false;
-    // With derivatives even if Ceres asks for the cost of a step alone: it
-    // accepts most steps, and then asks for them at the same point.
-    if (!has_pass_) RunPass();
-    if (evaluate_jacobians && !has_system_) ComputeSystem();
-    use_system_ = evaluate_jacobians;
-    // An approximate Hessian may explain more than there is: a constant added
-    // to the cost keeps the last row real.
-    if (reserve_ == 0) reserve_ = cost_ + 10 * system_.explained;
-  }
-
-  // E_c at the state of the moment, weighted.
-  double InitialCost() const {
-    return weights_.texel_weight *
-           RunJointPass(problem_, *state_, false, 0).squares;
-  }
-
-  double reserve() const { return reserve_; }
-
-  bool use_system() const { return use_system_; }
-  const JointSystem& system() const { return system_; }
-  // Orthonormal: its transpose turns rows over the tangent into ambient rows,
-  // for the manifold of the formulation. (A manifold's own PlusJacobian P would
-  // not do: P^T P = I / 4 for the sphere of Ceres 2.1.)
-  const PlaneBasis& basis(size_t plane) const { return hessian_basis_[plane]; }
-  const PoseLift& lift(size_t keyframe) const { return lift_[keyframe]; }
-
-  double RestResidual() const {
-    const double rest =
-        cost_ + reserve_ - (use_system_ ? system_.explained : 0.0);
-    return rest > 0 ? std::sqrt(rest) : 0.0;
-  }
-
- private:
-  void RunPass() {
-    pass_ = RunJointPass(problem_, *state_, true, own_share_);
-    if (with_planes_) basis_ = pass_.plane_axes;
-    // weighted E_c, and with planes lambda1 E_p.
-    cost_ = weights_.texel_weight * pass_.squares;
-    for (int j = 0; with_planes_ && j < problem_.NumPlanes(); ++j) {
-      const Eigen::Map<const Eigen::Vector4d> phi(state_->planes.data() +
-                                                  kPlaneSize * j);
-      cost_ += weights_.texel_weight * weights_.lambda1 *
-               phi.dot(problem_.moments[j] * phi);
-    }
-    has_pass_ = true;
-  }
-
-  void ComputeSystem() {
-    lift_.clear();
-    for (int k = 0; k < problem_.NumKeyframes(); ++k) {
-      lift_.push_back(LeftPoseLift(state_->poses.data() + kPoseSize * k));
-    }
-    const double weight = weights_.texel_weight;
-    const double plane_weight = weight * weights_.lambda1;
-    if (num_systems_++ % config_.joint_hessian_every == 0) {
-      FactorHessian(weight, plane_weight);
-    }
-    SetResiduals(problem_,
-                 pass_,
-                 *state_,
-                 hessian_basis_,
-                 weight,
-                 plane_weight,
-                 &system_);
-    has_system_ = true;
-  }
-
-  void FactorHessian(double weight, double plane_weight) {
-    hessian_basis_ = basis_;
-    JointHessian hessian =
-        config_.joint_method == JointMethod::kExact
-            ? ExactHessian(problem_, *state_, basis_, weight)
-            : TensorHessian(problem_, pass_, basis_, weight, common_share_);
-    LimitPlaneSteps(problem_,
-                    pass_,
-                    *state_,
-                    basis_,
-                    weight,
-                    plane_weight,
-                    config_.max_plane_tilt_rad,
-                    config_.max_plane_offset_m,
-                    &hessian);
-    system_ =
-        FactorJointSystem(problem_, std::move(hessian), basis_, plane_weight);
-  }
-
-  const TextureProblem& problem_;
-  const EnergyWeights& weights_;
-  const SolverConfig& config_;
-  double own_share_, common_share_;
-  bool with_planes_;
-  const ReconState* state_;
-  double cost_ = 0, reserve_ = 0;
-  bool has_pass_ = false, has_system_ = false, use_system_ = false;
-  JointPass pass_;
-  JointSystem system_;
-  std::vector<PlaneBasis> basis_;          // at the point of the moment
-  std::vector<PlaneBasis> hessian_basis_;  // of system_
-  int num_systems_ = 0;
-  std::vector<PoseLift> lift_;
-};
-
-// Three rows of R: over one plane and the poses that see it.
+// Three rows of R: over the offset of one plane, which follows the poses.
 class PlaneRowsCost : public ceres::CostFunction {
  public:
-  PlaneRowsCost(const JointEvaluation& evaluation, int plane, int num_poses)
+  PlaneRowsCost(const JointEvaluation& evaluation, int plane, int offset_size)
       : evaluation_(evaluation), plane_(plane) {
-    mutable_parameter_block_sizes()->assign(num_poses + 1, kPoseSize);
-    mutable_parameter_block_sizes()->front() = kPlaneSize;
+    mutable_parameter_block_sizes()->push_back(offset_size);
     set_num_residuals(3);
   }
 
@@ -168,20 +35,11 @@ class PlaneRowsCost : public ceres::CostFunction {
     Eigen::Map<Eigen::Vector3d> r(residuals);
     r.setZero();
     if (!evaluation_.use_system()) return true;
-    const JointPlaneRows& rows = evaluation_.system().planes[plane_];
-    r = rows.residual;
-    if (!jacobians) return true;
-    if (jacobians[0]) {
-      Eigen::Map<Eigen::Matrix<double, 3, 4, Eigen::RowMajor>> j(jacobians[0]);
-      j = rows.diagonal * evaluation_.basis(plane_).transpose();
-    }
-    for (size_t a = 0; a < rows.keyframes.size(); ++a) {
-      if (!jacobians[a + 1]) continue;
-      Eigen::Map<Eigen::Matrix<double, 3, kPoseSize, Eigen::RowMajor>> j(
-          jacobians[a + 1]);
-      j = rows.poses.middleCols<6>(6 * static_cast<Eigen::Index>(a)) *
-          evaluation_.lift(rows.keyframes[a]);
-    }
+    r = evaluation_.system().planes[plane_].residual;
+    if (!jacobians || !jacobians[0]) return true;
+    Eigen::Map<Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>> j(
+        jacobians[0], 3, parameter_block_sizes()[0]);
+    j = evaluation_.PlaneRows(plane_);
     return true;
   }
 
@@ -233,6 +91,7 @@ class RestCost : public ceres::SizedCostFunction<1, kPoseSize> {
   bool Evaluate(double const* const*,
                 double* residuals,
                 double** jacobians) const override {
+    if (!evaluation_.valid()) return false;
     residuals[0] = evaluation_.RestResidual();
     if (jacobians && jacobians[0]) {
       std::fill(jacobians[0], jacobians[0] + kPoseSize, 0.0);
@@ -245,10 +104,9 @@ class RestCost : public ceres::SizedCostFunction<1, kPoseSize> {
 };
 
 void AddBlocks(const TextureProblem& problem,
-               const EnergyWeights& weights,
                const JointEvaluation& evaluation,
-               bool with_planes,
                bool hold_common_motion,
+               FollowingPlanes* planes,
                ReconState* state,
                ceres::Problem* ceres_problem) {
   const int num_keyframes = problem.NumKeyframes();
@@ -270,21 +128,12 @@ void AddBlocks(const TextureProblem& problem,
     AddCommonMotionCost(
         problem, evaluation.InitialCost(), state, ceres_problem);
   }
-  for (int j = 0; with_planes && j < problem.NumPlanes(); ++j) {
-    const std::vector<int> keyframes = KeyframesOfPlane(problem, j);
-    if (keyframes.empty()) continue;
-    double* plane = state->planes.data() + kPlaneSize * j;
-    std::vector<double*> parameters = {plane};
-    for (const int k : keyframes) parameters.push_back(pose(k));
+  for (int j = 0; planes && j < problem.NumPlanes(); ++j) {
     ceres_problem->AddResidualBlock(
-        new PlaneRowsCost(evaluation, j, static_cast<int>(keyframes.size())),
+        new PlaneRowsCost(evaluation, j, planes->offset_size()),
         nullptr,
-        parameters);
-    ceres_problem->SetManifold(
-        plane,
-        CreatePlaneManifold(problem.formulation.plane, problem.anchors[j]));
+        planes->offset(j));
   }
-  TermBlocks(problem, weights).AddAll(state, ceres_problem);
 }
 
 }  // namespace
@@ -296,16 +145,18 @@ void SolveJoint(const TextureProblem& problem,
                 SolverMemory* memory,
                 ReconState* state,
                 PhaseSummary* summary) {
-  const bool with_planes = (blocks & kPlanes) != 0;
-  JointEvaluation evaluation(problem, weights, config, with_planes, state);
+  std::unique_ptr<FollowingPlanes> planes;
+  if (blocks & kPlanes) {
+    planes = std::make_unique<FollowingPlanes>(problem, state);
+  }
+  JointEvaluation evaluation(problem, weights, config, state, planes.get());
   ceres::Problem::Options problem_options;
   problem_options.evaluation_callback = &evaluation;
   ceres::Problem ceres_problem(problem_options);
   AddBlocks(problem,
-            weights,
             evaluation,
-            with_planes,
             config.remove_common_motion,
+            planes.get(),
             state,
             &ceres_problem);
   if (config.fix_first_pose) {
@@ -313,7 +164,6 @@ void SolveJoint(const TextureProblem& problem,
   }
 
   ceres::Solver::Options options;
-  // R is dense in the poses; planes first costs no fill.
   options.linear_solver_type =
       config.joint_linear_solver == JointLinearSolver::kCgnr
           ? ceres::CGNR
@@ -349,6 +199,7 @@ void SolveJoint(const TextureProblem& problem,
                    1.0,
                    config.max_joint_radius);
   }
+  if (planes) CHECK(planes->Place()) << "the point was evaluated before";
   SolveColors(problem, state);
 }
 

@@ -141,29 +141,37 @@ JointSystem FactorJointSystem(const TextureProblem& problem,
   return system;
 }
 
-void SetResiduals(const TextureProblem& problem,
-                  const JointPass& pass,
-                  const ReconState& state,
+JointGradient GradientOf(const TextureProblem& problem,
+                         const JointPass& pass,
+                         const ReconState& state,
+                         double weight,
+                         double plane_weight) {
+  JointGradient gradient;
+  for (const Vector6d& g : pass.pose_gradient) {
+    gradient.poses.push_back(weight * g);
+  }
+  for (size_t j = 0; j < pass.plane_gradient.size(); ++j) {
+    const Eigen::Map<const Eigen::Vector4d> phi(state.planes.data() +
+                                                kPlaneSize * j);
+    gradient.planes.push_back(weight * pass.plane_gradient[j] +
+                              plane_weight * problem.moments[j] * phi);
+  }
+  return gradient;
+}
+
+void SetResiduals(const JointGradient& gradient,
                   const std::vector<PlaneBasis>& plane_basis,
-                  double weight,
-                  double plane_weight,
                   JointSystem* system) {
-  const int num_keyframes = problem.NumKeyframes();
-  Eigen::VectorXd g(6 * num_keyframes);
-  for (int k = 0; k < num_keyframes; ++k) {
-    g.segment<6>(6 * k) = weight * pass.pose_gradient[k];
+  Eigen::VectorXd g(6 * static_cast<Eigen::Index>(gradient.poses.size()));
+  for (size_t k = 0; k < gradient.poses.size(); ++k) {
+    g.segment<6>(6 * static_cast<Eigen::Index>(k)) = gradient.poses[k];
   }
   system->explained = 0;
   for (size_t j = 0; j < system->planes.size(); ++j) {
     JointPlaneRows& rows = system->planes[j];
-    const Eigen::Map<const Eigen::Vector4d> phi(state.planes.data() +
-                                                kPlaneSize * j);
-    const Eigen::Vector3d plane_gradient =
-        plane_basis[j].transpose() * (weight * pass.plane_gradient[j] +
-                                      plane_weight * problem.moments[j] * phi);
     rows.residual =
         rows.diagonal.transpose().triangularView<Eigen::Lower>().solve(
-            plane_gradient);
+            plane_basis[j].transpose() * gradient.planes[j]);
     for (size_t a = 0; a < rows.keyframes.size(); ++a) {
       g.segment<6>(6 * rows.keyframes[a]) -=
           rows.poses.middleCols<6>(6 * a).transpose() * rows.residual;

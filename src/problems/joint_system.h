@@ -60,16 +60,24 @@ JointSystem FactorJointSystem(const TextureProblem& problem,
                               const std::vector<PlaneBasis>& plane_basis,
                               double plane_weight);
 
-// Sets the residuals R^-T g with the gradient g of `pass`, which `weight`
-// multiplies (texel area weight), and of lambda1 E_p: the system then has the
-// exact gradient, whatever point its Hessian is from. `plane_basis` is that of
-// the Hessian.
-void SetResiduals(const TextureProblem& problem,
-                  const JointPass& pass,
-                  const ReconState& state,
+// Half the gradient of the objective, or of a part of it.
+struct JointGradient {
+  std::vector<Vector6d> poses;          // by keyframe, left tangent
+  std::vector<Eigen::Vector4d> planes;  // by plane, ambient (n, d)
+};
+
+// That of `weight` (texel area weight) times the cost of `pass`, and of
+// `plane_weight` = lambda1 times E_p.
+JointGradient GradientOf(const TextureProblem& problem,
+                         const JointPass& pass,
+                         const ReconState& state,
+                         double weight,
+                         double plane_weight);
+
+// Sets the residuals R^-T g: the system then has this gradient, whatever point
+// its Hessian is from. `plane_basis` is that of the Hessian.
+void SetResiduals(const JointGradient& gradient,
                   const std::vector<PlaneBasis>& plane_basis,
-                  double weight,
-                  double plane_weight,
                   JointSystem* system);
 
 }  // namespace facet

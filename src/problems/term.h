@@ -48,6 +48,8 @@ class TermBlocks {
  public:
   TermBlocks(const TextureProblem& problem, const EnergyWeights& weights);
 
+  const std::vector<TermBlock>& blocks() const { return blocks_; }
+
   // The blocks of one pose or plane, their other parameter constant.
   void AddPose(int keyframe, ReconState* state, ceres::Problem* problem) const;
   void AddPlane(int plane, ReconState* state, ceres::Problem* problem) const;

@@ -123,7 +123,7 @@ TEST_F(JointStep, FactorKeepsTheGradientOfEveryHessian) {
         TensorHessian(problem, pass, bases, 4.0, 0.0),
         ExactHessian(problem, state_, bases, 4.0)}) {
     JointSystem system = FactorJointSystem(problem, hessian, bases, 3.0);
-    SetResiduals(problem, pass, state_, bases, 4.0, 3.0, &system);
+    SetResiduals(GradientOf(problem, pass, state_, 4.0, 3.0), bases, &system);
     Eigen::VectorXd poses = system.poses.transpose() * system.pose_residual;
     double explained = system.pose_residual.squaredNorm();
     for (size_t j = 0; j < system.planes.size(); ++j) {

@@ -1,0 +1,112 @@
+// Copyright (c) 2026 The facet authors
+// SPDX-License-Identifier: MIT
+#include "problems/joint_terms.h"
+
+#include <algorithm>
+
+#include "costs/plane_manifold.h"
+#include "costs/se3_manifold.h"
+#include "problems/texture_problem.h"
+
+namespace facet {
+namespace {
+
+// The columns of a plane's block that belong to a keyframe; new ones, zero, if
+// it sees no texel of the plane.
+auto ColumnsOf(int keyframe, JointPlaneBlocks* plane) {
+  auto& keyframes = plane->keyframes;
+  const auto where =
+      std::lower_bound(keyframes.begin(), keyframes.end(), keyframe);
+  const Eigen::Index at = 6 * (where - keyframes.begin());
+  if (where == keyframes.end() || *where != keyframe) {
+    const Eigen::Index after = plane->poses.cols() - at;
+    keyframes.insert(where, keyframe);
+    plane->poses.conservativeResize(Eigen::NoChange, at + 6 + after);
+    plane->poses.rightCols(after) = plane->poses.middleCols(at, after).eval();
+    plane->poses.middleCols<6>(at).setZero();
+  }
+  return plane->poses.middleCols<6>(at);
+}
+
+}  // namespace
+
+JointTerms::JointTerms(const TextureProblem& problem,
+                       const EnergyWeights& weights,
+                       bool with_planes) {
+  const TermBlocks terms(problem, weights);
+  for (const TermBlock& term : terms.blocks()) {
+    if (term.keyframe < 0 && !with_planes) continue;
+    const int rows = term.cost->num_residuals();
+    blocks_.push_back({term, Eigen::VectorXd(rows), {}, {}});
+    blocks_.back().by_pose.resize(rows, 6);
+    blocks_.back().by_plane.resize(rows, 4);
+  }
+}
+
+bool JointTerms::Evaluate(const ReconState& state) {
+  const LeftSe3Manifold pose_manifold;
+  Eigen::Matrix<double, kPoseSize, 6, Eigen::RowMajor> plus;
+  Eigen::Matrix<double, Eigen::Dynamic, kPoseSize, Eigen::RowMajor> pose_j;
+  Eigen::Matrix<double, Eigen::Dynamic, kPlaneSize, Eigen::RowMajor> plane_j;
+  for (Block& block : blocks_) {
+    pose_j.resize(block.residual.size(), kPoseSize);
+    plane_j.resize(block.residual.size(), kPlaneSize);
+    std::vector<const double*> parameters;
+    std::vector<double*> jacobians;
+    if (block.term.keyframe >= 0) {
+      parameters.push_back(state.poses.data() +
+                           kPoseSize * block.term.keyframe);
+      jacobians.push_back(pose_j.data());
+      pose_manifold.PlusJacobian(parameters.back(), plus.data());
+    }
+    if (block.term.plane >= 0) {
+      parameters.push_back(state.planes.data() + kPlaneSize * block.term.plane);
+      jacobians.push_back(plane_j.data());
+    }
+    if (!block.term.cost->Evaluate(
+            parameters.data(), block.residual.data(), jacobians.data())) {
+      return false;
+    }
+    if (block.term.keyframe >= 0) block.by_pose = pose_j * plus;
+    if (block.term.plane >= 0) block.by_plane = plane_j;
+  }
+  return true;
+}
+
+double JointTerms::cost() const {
+  double sum = 0;
+  for (const Block& block : blocks_) sum += block.residual.squaredNorm();
+  return sum;
+}
+
+void JointTerms::AddGradient(JointGradient* gradient) const {
+  for (const Block& block : blocks_) {
+    if (block.term.keyframe >= 0) {
+      gradient->poses[block.term.keyframe] +=
+          block.by_pose.transpose() * block.residual;
+    }
+    if (block.term.plane >= 0) {
+      gradient->planes[block.term.plane] +=
+          block.by_plane.transpose() * block.residual;
+    }
+  }
+}
+
+void JointTerms::AddHessian(const std::vector<PlaneBasis>& plane_basis,
+                            JointHessian* hessian) const {
+  for (const Block& block : blocks_) {
+    const int k = block.term.keyframe, j = block.term.plane;
+    if (k >= 0) {
+      hessian->poses.block<6, 6>(6 * k, 6 * k) +=
+          block.by_pose.transpose() * block.by_pose;
+    }
+    if (j < 0 || plane_basis.empty()) continue;
+    JointPlaneBlocks& plane = hessian->planes[j];
+    const Eigen::Matrix<double, Eigen::Dynamic, 3> rows =
+        block.by_plane * plane_basis[j];
+    plane.plane += rows.transpose() * rows;
+    if (k >= 0) ColumnsOf(k, &plane) += rows.transpose() * block.by_pose;
+  }
+}
+
+}  // namespace facet
