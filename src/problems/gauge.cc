@@ -132,7 +132,7 @@ void AddCommonMotionCost(const TextureProblem& problem,
   }
   ceres_problem->AddResidualBlock(
       CreateCommonMotionCost(problem.initial_cam_from_world,
-                             1e3 * std::sqrt(e_c)),
+                             CommonMotionWeight(e_c)),
       nullptr,
       parameters);
 }

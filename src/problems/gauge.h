@@ -10,6 +10,8 @@
 #include <ceres/cost_function.h>
 #include <ceres/problem.h>
 
+#include <cmath>
+
 #include "problems/texture_problem.h"
 
 namespace facet {
@@ -37,7 +39,10 @@ void RemoveCommonMotion(const TextureProblem& problem, ReconState* state);
 ceres::CostFunction* CreateCommonMotionCost(
     const std::vector<Pose>& initial_cam_from_world, double weight);
 
-// Adds it for the poses of `state`, so stiff that one millimetre costs `e_c`.
+// The weight with which one millimetre costs `e_c`.
+inline double CommonMotionWeight(double e_c) { return 1e3 * std::sqrt(e_c); }
+
+// Adds it for the poses of `state`, with that weight.
 void AddCommonMotionCost(const TextureProblem& problem,
                          double e_c,
                          ReconState* state,

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "costs/plane_manifold.h"
+#include "util/parallel_for.h"
 
 namespace facet {
 
@@ -13,7 +14,7 @@ JointEvaluation::JointEvaluation(const TextureProblem& problem,
                                  const EnergyWeights& weights,
                                  const SolverConfig& config,
                                  const ReconState* state,
-                                 FollowingPlanes* planes)
+                                 JointCoordinates* coordinates)
     : problem_(problem),
       weights_(weights),
       config_(config),
@@ -24,8 +25,8 @@ JointEvaluation::JointEvaluation(const TextureProblem& problem,
                         ? 0.0
                         : config.joint_common_share),
       state_(state),
-      planes_(planes),
-      terms_(problem, weights, planes != nullptr) {}
+      coordinates_(coordinates),
+      terms_(problem, weights, coordinates->with_planes()) {}
 
 void JointEvaluation::PrepareForEvaluation(bool evaluate_jacobians,
                                            bool new_evaluation_point) {
@@ -41,11 +42,6 @@ void JointEvaluation::PrepareForEvaluation(bool evaluate_jacobians,
   if (reserve_ == 0) reserve_ = cost_ + 10 * system_.explained;
 }
 
-double JointEvaluation::InitialCost() const {
-  return weights_.texel_weight *
-         RunJointPass(problem_, *state_, false, 0).squares;
-}
-
 double JointEvaluation::RestResidual() const {
   const double rest =
       cost_ + reserve_ - (use_system_ ? system_.explained : 0.0);
@@ -53,12 +49,18 @@ double JointEvaluation::RestResidual() const {
 }
 
 void JointEvaluation::RunPass() {
-  valid_ = (!planes_ || planes_->Place()) && terms_.Evaluate(*state_);
+  valid_ = coordinates_->Place();
   if (!valid_) return;
   pass_ = RunJointPass(problem_, *state_, true, own_share_);
+  if (config_.remove_common_motion && num_passes_++ == 0) {
+    terms_.HoldCommonMotion(problem_, weights_.texel_weight * pass_.squares);
+  }
+  valid_ = terms_.Evaluate(*state_);
+  if (!valid_) return;
   // weighted E_c, the terms, and with planes lambda1 E_p.
   cost_ = weights_.texel_weight * pass_.squares + terms_.cost();
-  for (int j = 0; planes_ && j < problem_.NumPlanes(); ++j) {
+  for (int j = 0; coordinates_->with_planes() && j < problem_.NumPlanes();
+       ++j) {
     const Eigen::Map<const Eigen::Vector4d> phi(state_->planes.data() +
                                                 kPlaneSize * j);
     cost_ += weights_.texel_weight * weights_.lambda1 *
@@ -68,10 +70,6 @@ void JointEvaluation::RunPass() {
 }
 
 void JointEvaluation::ComputeSystem() {
-  lift_.clear();
-  for (int k = 0; k < problem_.NumKeyframes(); ++k) {
-    lift_.push_back(LeftPoseLift(state_->poses.data() + kPoseSize * k));
-  }
   const double weight = weights_.texel_weight;
   const double plane_weight = weight * weights_.lambda1;
   if (num_systems_++ % config_.joint_hessian_every == 0) {
@@ -81,13 +79,28 @@ void JointEvaluation::ComputeSystem() {
       GradientOf(problem_, pass_, *state_, weight, plane_weight);
   terms_.AddGradient(&gradient);
   SetResiduals(gradient, hessian_basis_, &system_);
-  if (planes_) planes_->Follow(system_, hessian_basis_);
+  coordinates_->Linearise(system_, hessian_basis_);
+  FillPoseRows();
   has_system_ = true;
+}
+
+void JointEvaluation::FillPoseRows() {
+  const int num_keyframes = problem_.NumKeyframes();
+  pose_rows_.resize(CellIndex(num_keyframes) * kCell);
+  ParallelFor(0, num_keyframes, [&](size_t row) {
+    const int k = static_cast<int>(row);
+    double* cell = pose_rows_.data() + CellIndex(k) * kCell;
+    for (int other = k; other < num_keyframes; ++other, cell += kCell) {
+      Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>> j(cell);
+      j.noalias() = system_.poses.block<6, 6>(6 * k, 6 * other) *
+                    coordinates_->LeftFromPose(other);
+    }
+  });
 }
 
 void JointEvaluation::FactorHessian(double weight, double plane_weight) {
   hessian_basis_.clear();
-  if (planes_) hessian_basis_ = pass_.plane_axes;
+  if (coordinates_->with_planes()) hessian_basis_ = pass_.plane_axes;
   JointHessian hessian =
       config_.joint_method == JointMethod::kExact
           ? ExactHessian(problem_, *state_, hessian_basis_, weight)

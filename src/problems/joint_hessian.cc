@@ -144,13 +144,16 @@ std::vector<int> KeyframesOfPlane(const TextureProblem& problem, int plane) {
 JointHessian ZeroJointHessian(const TextureProblem& problem,
                               size_t num_planes) {
   JointHessian zero;
-  zero.poses.setZero(6 * problem.NumKeyframes(), 6 * problem.NumKeyframes());
+  zero.poses.resize(6 * problem.NumKeyframes(), 6 * problem.NumKeyframes());
+  ParallelFor(0, zero.poses.cols(), [&](size_t i) {
+    zero.poses.col(static_cast<Eigen::Index>(i)).setZero();
+  });
   zero.planes.resize(num_planes);
-  for (size_t j = 0; j < num_planes; ++j) {
+  ParallelFor(0, num_planes, [&](size_t j) {
     zero.planes[j].keyframes = KeyframesOfPlane(problem, static_cast<int>(j));
     zero.planes[j].poses.setZero(
         3, 6 * static_cast<Eigen::Index>(zero.planes[j].keyframes.size()));
-  }
+  });
   return zero;
 }
 

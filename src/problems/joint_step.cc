@@ -9,23 +9,24 @@
 #include <glog/logging.h>
 
 #include <algorithm>
-#include <memory>
 
-#include "costs/se3_manifold.h"
 #include "problems/color_step.h"
-#include "problems/following_planes.h"
-#include "problems/gauge.h"
+#include "problems/joint_coordinates.h"
 #include "problems/joint_evaluation.h"
 
 namespace facet {
 namespace {
 
-// Three rows of R: over the offset of one plane, which follows the poses.
+using RowMajorX =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+// Three rows of R: over the offset of one plane.
 class PlaneRowsCost : public ceres::CostFunction {
  public:
-  PlaneRowsCost(const JointEvaluation& evaluation, int plane, int offset_size)
+  PlaneRowsCost(const JointEvaluation& evaluation, int plane)
       : evaluation_(evaluation), plane_(plane) {
-    mutable_parameter_block_sizes()->push_back(offset_size);
+    mutable_parameter_block_sizes()->push_back(
+        evaluation.coordinates().plane_size());
     set_num_residuals(3);
   }
 
@@ -35,11 +36,11 @@ class PlaneRowsCost : public ceres::CostFunction {
     Eigen::Map<Eigen::Vector3d> r(residuals);
     r.setZero();
     if (!evaluation_.use_system()) return true;
-    r = evaluation_.system().planes[plane_].residual;
+    const JointPlaneRows& rows = evaluation_.system().planes[plane_];
+    r = rows.residual;
     if (!jacobians || !jacobians[0]) return true;
-    Eigen::Map<Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>> j(
-        jacobians[0], 3, parameter_block_sizes()[0]);
-    j = evaluation_.PlaneRows(plane_);
+    Eigen::Map<RowMajorX> j(jacobians[0], 3, parameter_block_sizes()[0]);
+    j = rows.diagonal * evaluation_.coordinates().BasisFromPlane(plane_);
     return true;
   }
 
@@ -48,12 +49,11 @@ class PlaneRowsCost : public ceres::CostFunction {
   int plane_;
 };
 
-// Six rows of R: over one pose and all later ones.
 class PoseRowsCost : public ceres::CostFunction {
  public:
   PoseRowsCost(const JointEvaluation& evaluation, int keyframe, int num_poses)
       : evaluation_(evaluation), keyframe_(keyframe) {
-    mutable_parameter_block_sizes()->assign(num_poses - keyframe, kPoseSize);
+    mutable_parameter_block_sizes()->assign(num_poses - keyframe, 6);
     set_num_residuals(6);
   }
 
@@ -63,16 +63,14 @@ class PoseRowsCost : public ceres::CostFunction {
     Eigen::Map<Vector6d> r(residuals);
     r.setZero();
     if (!evaluation_.use_system()) return true;
-    const JointSystem& system = evaluation_.system();
-    r = system.pose_residual.segment<6>(6 * keyframe_);
+    r = evaluation_.system().pose_residual.segment<6>(6 * keyframe_);
     if (!jacobians) return true;
+    const double* cell = evaluation_.PoseRows(keyframe_);
     for (size_t a = 0; a < parameter_block_sizes().size(); ++a) {
-      if (!jacobians[a]) continue;
-      const int other = keyframe_ + static_cast<int>(a);
-      Eigen::Map<Eigen::Matrix<double, 6, kPoseSize, Eigen::RowMajor>> j(
-          jacobians[a]);
-      j = system.poses.block<6, 6>(6 * keyframe_, 6 * other) *
-          evaluation_.lift(other);
+      if (jacobians[a]) {
+        std::copy(cell, cell + JointEvaluation::kCell, jacobians[a]);
+      }
+      cell += JointEvaluation::kCell;
     }
     return true;
   }
@@ -83,7 +81,7 @@ class PoseRowsCost : public ceres::CostFunction {
 };
 
 // What the rows do not explain: keeps the cost exact.
-class RestCost : public ceres::SizedCostFunction<1, kPoseSize> {
+class RestCost : public ceres::SizedCostFunction<1, 6> {
  public:
   explicit RestCost(const JointEvaluation& evaluation)
       : evaluation_(evaluation) {}
@@ -94,7 +92,7 @@ class RestCost : public ceres::SizedCostFunction<1, kPoseSize> {
     if (!evaluation_.valid()) return false;
     residuals[0] = evaluation_.RestResidual();
     if (jacobians && jacobians[0]) {
-      std::fill(jacobians[0], jacobians[0] + kPoseSize, 0.0);
+      std::fill(jacobians[0], jacobians[0] + 6, 0.0);
     }
     return true;
   }
@@ -105,34 +103,23 @@ class RestCost : public ceres::SizedCostFunction<1, kPoseSize> {
 
 void AddBlocks(const TextureProblem& problem,
                const JointEvaluation& evaluation,
-               bool hold_common_motion,
-               FollowingPlanes* planes,
-               ReconState* state,
+               JointCoordinates* coordinates,
                ceres::Problem* ceres_problem) {
   const int num_keyframes = problem.NumKeyframes();
-  const auto pose = [&](int k) { return state->poses.data() + kPoseSize * k; };
   for (int k = 0; k < num_keyframes; ++k) {
     std::vector<double*> parameters;
     for (int other = k; other < num_keyframes; ++other) {
-      parameters.push_back(pose(other));
+      parameters.push_back(coordinates->pose(other));
     }
     ceres_problem->AddResidualBlock(
         new PoseRowsCost(evaluation, k, num_keyframes), nullptr, parameters);
-    ceres_problem->SetManifold(
-        pose(k), CreatePoseManifold(problem.formulation.manifold));
   }
   // On a pose that moves: Ceres evaluates residuals of constant blocks once.
   ceres_problem->AddResidualBlock(
-      new RestCost(evaluation), nullptr, pose(num_keyframes - 1));
-  if (hold_common_motion) {
-    AddCommonMotionCost(
-        problem, evaluation.InitialCost(), state, ceres_problem);
-  }
-  for (int j = 0; planes && j < problem.NumPlanes(); ++j) {
+      new RestCost(evaluation), nullptr, coordinates->pose(num_keyframes - 1));
+  for (int j = 0; coordinates->with_planes() && j < problem.NumPlanes(); ++j) {
     ceres_problem->AddResidualBlock(
-        new PlaneRowsCost(evaluation, j, planes->offset_size()),
-        nullptr,
-        planes->offset(j));
+        new PlaneRowsCost(evaluation, j), nullptr, coordinates->plane(j));
   }
 }
 
@@ -145,22 +132,14 @@ void SolveJoint(const TextureProblem& problem,
                 SolverMemory* memory,
                 ReconState* state,
                 PhaseSummary* summary) {
-  std::unique_ptr<FollowingPlanes> planes;
-  if (blocks & kPlanes) {
-    planes = std::make_unique<FollowingPlanes>(problem, state);
-  }
-  JointEvaluation evaluation(problem, weights, config, state, planes.get());
+  JointCoordinates coordinates(problem, (blocks & kPlanes) != 0, state);
+  JointEvaluation evaluation(problem, weights, config, state, &coordinates);
   ceres::Problem::Options problem_options;
   problem_options.evaluation_callback = &evaluation;
   ceres::Problem ceres_problem(problem_options);
-  AddBlocks(problem,
-            evaluation,
-            config.remove_common_motion,
-            planes.get(),
-            state,
-            &ceres_problem);
+  AddBlocks(problem, evaluation, &coordinates, &ceres_problem);
   if (config.fix_first_pose) {
-    ceres_problem.SetParameterBlockConstant(state->poses.data());
+    ceres_problem.SetParameterBlockConstant(coordinates.pose(0));
   }
 
   ceres::Solver::Options options;
@@ -199,7 +178,7 @@ void SolveJoint(const TextureProblem& problem,
                    1.0,
                    config.max_joint_radius);
   }
-  if (planes) CHECK(planes->Place()) << "the point was evaluated before";
+  CHECK(coordinates.Place()) << "the point was evaluated before";
   SolveColors(problem, state);
 }
 

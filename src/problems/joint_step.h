@@ -4,12 +4,12 @@
 // The joint step: poses, planes and colours at once, warps fixed. facet's own
 // contribution beside the paper's alternation (docs/design.md).
 //
-// One Ceres problem over all poses and the offsets of all planes, which follow
-// the poses (problems/following_planes.h). Its rows come from one pass over the
+// One Ceres problem over offsets of all poses and planes
+// (problems/joint_coordinates.h). Its rows come from one pass over the
 // observations an evaluation (problems/joint_evaluation.h, joint_pass.h,
 // joint_system.h): exact cost and gradient with re-averaged colours,
-// consensus-tensor Hessian; lambda1 E_p and all terms are part of it. The common
-// motion (problems/gauge.h) is an ordinary residual block.
+// consensus-tensor Hessian; lambda1 E_p, all terms and the gauge are part of
+// it.
 #pragma once
 
 #include "problems/solve_blocks.h"

@@ -49,7 +49,8 @@ void SubtractPlanes(const JointSystem& system,
 }
 
 // R of R^T R = A in place of A, both by their upper triangles, block row by
-// block row; the blocks of a row on all threads. False if A is not positive.
+// block row; the blocks of a row on all threads. Below the diagonal, zeros stay
+// zeros. False if A is not positive.
 bool FactorInPlace(Eigen::MatrixXd* a) {
   const Eigen::Index n = a->rows();
   const auto size = [n](Eigen::Index begin) {
@@ -80,14 +81,18 @@ bool FactorInPlace(Eigen::MatrixXd* a) {
 // Upper Cholesky factor of a symmetric matrix given by its upper triangle;
 // raises the diagonal until it exists.
 Eigen::MatrixXd UpperFactor(const Eigen::MatrixXd& upper) {
+  const Eigen::Index n = upper.rows();
   Eigen::VectorXd diagonal = upper.diagonal();
   for (double shift = kJointShift;; shift *= 10) {
-    Eigen::MatrixXd factor = upper;
-    factor.diagonal() = diagonal;
-    if (FactorInPlace(&factor)) {
-      factor.triangularView<Eigen::StrictlyLower>().setZero();
-      return factor;
-    }
+    Eigen::MatrixXd factor(n, n);
+    ParallelForChunks(0, n, kBlock, [&](Eigen::Index begin, Eigen::Index end) {
+      for (Eigen::Index i = begin; i < end; ++i) {
+        factor.col(i).head(i) = upper.col(i).head(i);
+        factor(i, i) = diagonal[i];
+        factor.col(i).tail(n - i - 1).setZero();
+      }
+    });
+    if (FactorInPlace(&factor)) return factor;
     for (Eigen::Index i = 0; i < diagonal.size(); ++i) {
       diagonal[i] += shift * std::abs(upper(i, i)) + kAbsoluteShift;
     }

@@ -6,6 +6,7 @@
 
 #include "costs/plane_manifold.h"
 #include "costs/se3_manifold.h"
+#include "problems/gauge.h"
 #include "problems/texture_problem.h"
 
 namespace facet {
@@ -43,6 +44,11 @@ JointTerms::JointTerms(const TextureProblem& problem,
   }
 }
 
+void JointTerms::HoldCommonMotion(const TextureProblem& problem, double e_c) {
+  motion_.reset(CreateCommonMotionCost(problem.initial_cam_from_world,
+                                       CommonMotionWeight(e_c)));
+}
+
 bool JointTerms::Evaluate(const ReconState& state) {
   const LeftSe3Manifold pose_manifold;
   Eigen::Matrix<double, kPoseSize, 6, Eigen::RowMajor> plus;
@@ -70,16 +76,46 @@ bool JointTerms::Evaluate(const ReconState& state) {
     if (block.term.keyframe >= 0) block.by_pose = pose_j * plus;
     if (block.term.plane >= 0) block.by_plane = plane_j;
   }
+  return !motion_ || EvaluateMotion(state);
+}
+
+bool JointTerms::EvaluateMotion(const ReconState& state) {
+  const size_t num_poses = motion_->parameter_block_sizes().size();
+  std::vector<Eigen::Matrix<double, 6, kPoseSize, Eigen::RowMajor>> ambient(
+      num_poses);
+  std::vector<const double*> parameters;
+  std::vector<double*> jacobians;
+  for (size_t k = 0; k < num_poses; ++k) {
+    parameters.push_back(state.poses.data() + kPoseSize * k);
+    jacobians.push_back(ambient[k].data());
+  }
+  if (!motion_->Evaluate(
+          parameters.data(), motion_residual_.data(), jacobians.data())) {
+    return false;
+  }
+  motion_by_pose_.resize(6, 6 * static_cast<Eigen::Index>(num_poses));
+  for (size_t k = 0; k < num_poses; ++k) {
+    Eigen::Matrix<double, kPoseSize, 6, Eigen::RowMajor> plus;
+    LeftSe3Manifold().PlusJacobian(parameters[k], plus.data());
+    motion_by_pose_.middleCols<6>(6 * static_cast<Eigen::Index>(k)) =
+        ambient[k] * plus;
+  }
   return true;
 }
 
 double JointTerms::cost() const {
-  double sum = 0;
+  double sum = motion_residual_.squaredNorm();
   for (const Block& block : blocks_) sum += block.residual.squaredNorm();
   return sum;
 }
 
 void JointTerms::AddGradient(JointGradient* gradient) const {
+  for (size_t k = 0; motion_ && k < gradient->poses.size(); ++k) {
+    gradient->poses[k] +=
+        motion_by_pose_.middleCols<6>(6 * static_cast<Eigen::Index>(k))
+            .transpose() *
+        motion_residual_;
+  }
   for (const Block& block : blocks_) {
     if (block.term.keyframe >= 0) {
       gradient->poses[block.term.keyframe] +=
@@ -94,6 +130,10 @@ void JointTerms::AddGradient(JointGradient* gradient) const {
 
 void JointTerms::AddHessian(const std::vector<PlaneBasis>& plane_basis,
                             JointHessian* hessian) const {
+  if (motion_) {
+    hessian->poses.selfadjointView<Eigen::Upper>().rankUpdate(
+        motion_by_pose_.transpose());
+  }
   for (const Block& block : blocks_) {
     const int k = block.term.keyframe, j = block.term.plane;
     if (k >= 0) {

@@ -1,8 +1,8 @@
 // Copyright (c) 2026 The facet authors
 // SPDX-License-Identifier: MIT
 //
-// The joint system with its terms, and planes that follow the poses in it.
-#include "problems/following_planes.h"
+// The joint system with its terms, in the coordinates that Ceres gets.
+#include "problems/joint_coordinates.h"
 
 #include <ceres/autodiff_cost_function.h>
 #include <gtest/gtest.h>
@@ -10,8 +10,8 @@
 #include <algorithm>
 #include <memory>
 
-#include "costs/se3_manifold.h"
 #include "problems/energy.h"
+#include "problems/gauge.h"
 #include "problems/joint_terms.h"
 #include "tests/support/tiny_scene.h"
 
@@ -19,10 +19,12 @@ namespace facet {
 namespace {
 
 constexpr double kWeight = 4;
+constexpr double kGauge = 1e-3;  // costs of 1 mm of common motion
 
-class JointSystemTest : public testing::Test {
+class JointCoordinatesTest : public testing::Test {
  protected:
-  JointSystemTest() : scene_(MakeTinyScene(Options())), state_(scene_.truth) {
+  JointCoordinatesTest()
+      : scene_(MakeTinyScene(Options())), state_(scene_.truth) {
     AddDepthMoments(&scene_);
     PerturbPoses(0.003, 0.004, 1, &state_);
     PerturbPlanes(0.003, 0.003, 2, &state_);
@@ -39,7 +41,7 @@ class JointSystemTest : public testing::Test {
 
   double PlaneWeight() const { return kWeight * weights_.lambda1; }
 
-  // E_c with averaged colours + lambda1 E_p + E_prior + E_depth.
+  // E_c with averaged colours + lambda1 E_p + E_prior + E_depth + the gauge.
   double Objective(const ReconState& state) const {
     double sum =
         kWeight * RunJointPass(scene_.problem, state, false, 0).squares;
@@ -48,8 +50,15 @@ class JointSystemTest : public testing::Test {
                                                   kPlaneSize * j);
       sum += PlaneWeight() * phi.dot(scene_.problem.moments[j] * phi);
     }
+    std::vector<Pose> poses;
+    for (int k = 0; k < scene_.problem.NumKeyframes(); ++k) {
+      poses.push_back(state.CamFromWorld(k));
+    }
     return sum + EvaluateTerm(PosePriorTerm(scene_.problem, weights_), state) +
-           EvaluateTerm(DepthTerm(scene_.problem, weights_), state);
+           EvaluateTerm(DepthTerm(scene_.problem, weights_), state) +
+           (CommonMotionWeight(kGauge) *
+            MeanMotion(scene_.problem.initial_cam_from_world, poses))
+               .squaredNorm();
   }
 
   // The system at the state, with residuals.
@@ -58,6 +67,7 @@ class JointSystemTest : public testing::Test {
     const JointPass pass = RunJointPass(problem, state_, true, 0.1);
     basis_ = pass.plane_axes;
     JointTerms terms(problem, weights_, true);
+    terms.HoldCommonMotion(problem, kGauge);
     ASSERT_TRUE(terms.Evaluate(state_));
     JointHessian hessian = TensorHessian(problem, pass, basis_, kWeight, 0.99);
     terms.AddHessian(basis_, &hessian);
@@ -69,13 +79,6 @@ class JointSystemTest : public testing::Test {
     SetResiduals(gradient, basis_, &system_);
   }
 
-  void MovePose(int keyframe, const Vector6d& xi, ReconState* state) const {
-    double* pose = state->poses.data() + kPoseSize * keyframe;
-    const ReconState before = *state;
-    LeftSe3Manifold().Plus(
-        before.poses.data() + kPoseSize * keyframe, xi.data(), pose);
-  }
-
   TinyScene scene_;
   ReconState state_;
   EnergyWeights weights_;
@@ -84,50 +87,52 @@ class JointSystemTest : public testing::Test {
 };
 
 // Breaks when planes follow with a wrong sign or frame, when a pose row keeps
-// what the planes take over, or when an offset is over another tangent than its
-// row: R^T r is then not the derivative along a pose whose planes follow.
-TEST_F(JointSystemTest, RowsAreTheGradientAlongPosesThatPlanesFollow) {
+// what the planes take over, when an offset is over another tangent than its
+// row, or when a term is missing: R^T r is then not the derivative of the
+// objective by the offsets.
+TEST_F(JointCoordinatesTest, RowsAreTheGradientByTheOffsets) {
   Build();
   const double h = 2e-5;
-  for (const PlaneKind kind : {PlaneKind::kAnchored,
-                               PlaneKind::kRaw4,
-                               PlaneKind::kNormalised4,
-                               PlaneKind::kOrigin,
-                               PlaneKind::kUnit4}) {
-    scene_.problem.formulation.plane = kind;
+  const std::pair<PlaneKind, PoseKind> kinds[] = {
+      {PlaneKind::kAnchored, PoseKind::kLeft},
+      {PlaneKind::kRaw4, PoseKind::kRight},
+      {PlaneKind::kNormalised4, PoseKind::kQuaternion},
+      {PlaneKind::kOrigin, PoseKind::kLeft},
+      {PlaneKind::kUnit4, PoseKind::kRight}};
+  for (const auto& [plane_kind, pose_kind] : kinds) {
+    scene_.problem.formulation.plane = plane_kind;
+    scene_.problem.formulation.manifold = pose_kind;
     ReconState moved = state_;
-    FollowingPlanes planes(scene_.problem, &moved);
-    planes.Follow(system_, basis_);
+    JointCoordinates coordinates(scene_.problem, true, &moved);
+    coordinates.Linearise(system_, basis_);
     std::vector<double> analytic, numeric;
-    const auto difference = [&](const auto& move) {
+    const auto compare = [&](double derivative, double* offset) {
       double value[2];
       for (const int side : {0, 1}) {
-        moved = state_;
-        move(side == 0 ? -h : h);
-        ASSERT_TRUE(planes.Place());
+        *offset = side == 0 ? -h : h;
+        ASSERT_TRUE(coordinates.Place());
         value[side] = Objective(moved);
-        move(0);
       }
+      *offset = 0;
+      analytic.push_back(2 * derivative);
       numeric.push_back((value[1] - value[0]) / (2 * h));
     };
     const Eigen::VectorXd by_pose =
         system_.poses.transpose() * system_.pose_residual;
     for (int k = 0; k < scene_.problem.NumKeyframes(); ++k) {
+      const Vector6d by_offset =
+          coordinates.LeftFromPose(k).transpose() * by_pose.segment<6>(6 * k);
       for (int i = 0; i < 6; ++i) {
-        analytic.push_back(2 * by_pose[6 * k + i]);
-        difference([&](double step) {
-          moved.poses = state_.poses;
-          MovePose(k, step * Vector6d::Unit(i), &moved);
-        });
+        compare(by_offset[i], coordinates.pose(k) + i);
       }
     }
     for (int j = 0; j < scene_.problem.NumPlanes(); ++j) {
       const Eigen::VectorXd by_offset =
-          (system_.planes[j].diagonal * planes.BasisFromOffset(j)).transpose() *
+          (system_.planes[j].diagonal * coordinates.BasisFromPlane(j))
+              .transpose() *
           system_.planes[j].residual;
-      for (int i = 0; i < planes.offset_size(); ++i) {
-        analytic.push_back(2 * by_offset[i]);
-        difference([&](double step) { planes.offset(j)[i] = step; });
+      for (int i = 0; i < coordinates.plane_size(); ++i) {
+        compare(by_offset[i], coordinates.plane(j) + i);
       }
     }
     const Eigen::Map<Eigen::VectorXd> a(analytic.data(), analytic.size());
@@ -138,56 +143,63 @@ TEST_F(JointSystemTest, RowsAreTheGradientAlongPosesThatPlanesFollow) {
   }
 }
 
-// Breaks when offsets or poses are counted from an old point: a plane would
+// Breaks when offsets are counted from an old point: poses and planes would
 // jump when the next linearisation begins.
-TEST_F(JointSystemTest, PlanesStayWhereTheyAreWhenTheyFollowFromANewPoint) {
+TEST_F(JointCoordinatesTest, NothingMovesWhenALinearisationBegins) {
   Build();
   ReconState moved = state_;
-  FollowingPlanes planes(scene_.problem, &moved);
-  ASSERT_TRUE(planes.Place());
+  JointCoordinates coordinates(scene_.problem, true, &moved);
+  ASSERT_TRUE(coordinates.Place());
   EXPECT_EQ(moved.planes, state_.planes);
-  planes.Follow(system_, basis_);
+  EXPECT_EQ(moved.poses, state_.poses);
+  coordinates.Linearise(system_, basis_);
   for (int k = 0; k < scene_.problem.NumKeyframes(); ++k) {
-    MovePose(k, 1e-3 * (k + 1) * Vector6d::Ones(), &moved);
+    std::fill(coordinates.pose(k), coordinates.pose(k) + 6, 1e-3 * (k + 1));
   }
-  for (int i = 0; i < planes.offset_size(); ++i) planes.offset(0)[i] = 1e-3;
-  ASSERT_TRUE(planes.Place());
-  const std::vector<double> there = moved.planes;
-  EXPECT_NE(there, state_.planes);
-  planes.Follow(system_, basis_);
-  ASSERT_TRUE(planes.Place());
-  for (size_t i = 0; i < there.size(); ++i) {
-    EXPECT_NEAR(moved.planes[i], there[i], 1e-14);
+  coordinates.plane(0)[0] = 1e-3;
+  ASSERT_TRUE(coordinates.Place());
+  const ReconState there = moved;
+  EXPECT_NE(there.planes, state_.planes);
+  EXPECT_NE(there.poses, state_.poses);
+  coordinates.Linearise(system_, basis_);
+  ASSERT_TRUE(coordinates.Place());
+  for (size_t i = 0; i < there.planes.size(); ++i) {
+    EXPECT_NEAR(moved.planes[i], there.planes[i], 1e-14);
+  }
+  for (size_t i = 0; i < there.poses.size(); ++i) {
+    EXPECT_NEAR(moved.poses[i], there.poses[i], 1e-14);
   }
 }
 
 // Breaks when planes do not go to the minimum of the model, by which Ceres
 // would have to move them after the poses: there its derivative by a plane,
 // R_jj' (R_jj dphi + R_jp xi), is zero.
-TEST_F(JointSystemTest, PlanesFollowToTheMinimumOfTheModel) {
+TEST_F(JointCoordinatesTest, PlanesFollowToTheMinimumOfTheModel) {
   Build();
   ReconState moved = state_;
-  FollowingPlanes planes(scene_.problem, &moved);
-  planes.Follow(system_, basis_);
-  std::vector<Vector6d> xi;
+  JointCoordinates coordinates(scene_.problem, true, &moved);
+  coordinates.Linearise(system_, basis_);
+  const auto xi = [](int k) -> Vector6d {
+    return 1e-6 * Vector6d::Unit(k % 6);
+  };
   for (int k = 0; k < scene_.problem.NumKeyframes(); ++k) {
-    xi.push_back(1e-6 * Vector6d::Unit(k % 6));
-    MovePose(k, xi[k], &moved);
+    Eigen::Map<Vector6d>(coordinates.pose(k)) = xi(k);  // left increments
   }
-  ASSERT_TRUE(planes.Place());
+  ASSERT_TRUE(coordinates.Place());
   for (size_t j = 0; j < system_.planes.size(); ++j) {
     const JointPlaneRows& rows = system_.planes[j];
-    const Eigen::Vector4d step = Eigen::Map<const Eigen::Vector4d>(
-                                     moved.planes.data() + kPlaneSize * j) -
-                                 Eigen::Map<const Eigen::Vector4d>(
-                                     state_.planes.data() + kPlaneSize * j);
+    const Eigen::Map<const Eigen::Vector4d> from(state_.planes.data() +
+                                                 kPlaneSize * j);
+    const Eigen::Map<const Eigen::Vector4d> to(moved.planes.data() +
+                                               kPlaneSize * j);
     Eigen::Vector3d by_poses = Eigen::Vector3d::Zero();
     for (size_t a = 0; a < rows.keyframes.size(); ++a) {
-      by_poses += rows.poses.middleCols<6>(6 * a) * xi[rows.keyframes[a]];
+      by_poses += rows.poses.middleCols<6>(6 * a) * xi(rows.keyframes[a]);
     }
     ASSERT_GT(by_poses.norm(), 0);
-    EXPECT_LT((rows.diagonal * basis_[j].transpose() * step + by_poses).norm(),
-              1e-4 * by_poses.norm());
+    EXPECT_LT(
+        (rows.diagonal * basis_[j].transpose() * (to - from) + by_poses).norm(),
+        1e-4 * by_poses.norm());
   }
 }
 
@@ -202,7 +214,7 @@ struct MixedCost {
 
 // Breaks when a term between a plane and a pose that sees none of its texels is
 // lost, or moves the blocks of others.
-TEST_F(JointSystemTest, TermsMayTieAPlaneToAnyPose) {
+TEST_F(JointCoordinatesTest, TermsMayTieAPlaneToAnyPose) {
   const TextureProblem& problem = scene_.problem;
   const JointPass pass = RunJointPass(problem, state_, true, 0.1);
   JointHessian with = TensorHessian(problem, pass, pass.plane_axes, 1, 0.99);
