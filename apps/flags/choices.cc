@@ -39,6 +39,7 @@ std::vector<FlagChoices> MakeTable() {
       {"pose_iterations", {}, true},
       {"plane_iterations", {}, true},
       {"joint_iterations", {}, true},
+      {"joint_tolerance", {}, true},
       {"joint_hessian_every", {}, true},
       {"active_tolerance", {}, true},
       {"stop_decrease", {}, true},

@@ -91,7 +91,11 @@ DEFINE_int32(plane_iterations,
              "iterations of a plane solve");
 DEFINE_int32(joint_iterations,
              SolverConfig().max_joint_iterations,
-             "iterations of a joint solve");
+             "iterations of a joint solve, at most");
+DEFINE_double(joint_tolerance,
+              SolverConfig().joint_tolerance,
+              "a joint solve ends after a step that lowers the objective by "
+              "less than this share");
 DEFINE_int32(joint_hessian_every,
              SolverConfig().joint_hessian_every,
              "joint solves build the Hessian anew every so many iterations");
@@ -142,6 +146,7 @@ void OptimisationOptionsFromFlags(PhotometricOptions* options) {
   p.solver.max_pose_iterations = FLAGS_pose_iterations;
   p.solver.max_plane_iterations = FLAGS_plane_iterations;
   p.solver.max_joint_iterations = FLAGS_joint_iterations;
+  p.solver.joint_tolerance = FLAGS_joint_tolerance;
   p.solver.joint_hessian_every = FLAGS_joint_hessian_every;
   p.solver.active_tolerance = FLAGS_active_tolerance;
 }

@@ -260,6 +260,7 @@ void CheckNumbers() {
       {"pose_iterations", 1, 10000},
       {"plane_iterations", 1, 10000},
       {"joint_iterations", 1, 10000},
+      {"joint_tolerance", 0, 1},
       {"joint_hessian_every", 1, 10000},
       {"active_tolerance", 0, 1},
       {"lambda3", 0},

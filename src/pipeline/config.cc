@@ -86,6 +86,7 @@ json PhotometricSettings(const ReconstructOptions& o) {
       {"max_plane_iterations", p.solver.max_plane_iterations},
       {"max_pose_iterations", p.solver.max_pose_iterations},
       {"max_joint_iterations", p.solver.max_joint_iterations},
+      {"joint_tolerance", p.solver.joint_tolerance},
       {"joint_hessian_every", p.solver.joint_hessian_every},
       {"active_tolerance", p.solver.active_tolerance},
       {"plane", static_cast<int>(p.formulation.plane)},

@@ -40,7 +40,7 @@ struct PhotometricOptions {
   int levels = 3;
   // Joint solves of poses, planes and colours first, without warp, then the
   // warps: the measured best (docs/ablations.md). The paper: 10x[C; Phi; T+F].
-  std::string schedule = "2x[C+Phi+T]; 2x[C; F]";
+  std::string schedule = "C+Phi+T; 2x[C; F]";
   // Bring the keyframes to a common exposure first (texture/exposure.h); off in
   // the paper.
   bool exposure = true;

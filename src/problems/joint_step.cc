@@ -123,6 +123,28 @@ void AddBlocks(const TextureProblem& problem,
   }
 }
 
+// Ends the solve after a step that lowered the objective by less than a share.
+// (Ceres's own tolerance is of a cost with the reserve in it, and would drop
+// that step.)
+class EndOfGain : public ceres::IterationCallback {
+ public:
+  EndOfGain(const JointEvaluation& evaluation, double tolerance)
+      : evaluation_(evaluation), tolerance_(tolerance) {}
+
+  ceres::CallbackReturnType operator()(
+      const ceres::IterationSummary& step) override {
+    const double objective = step.cost - 0.5 * evaluation_.reserve();
+    return step.iteration > 0 && step.step_is_successful &&
+                   step.cost_change < tolerance_ * objective
+               ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
+               : ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  const JointEvaluation& evaluation_;
+  double tolerance_;
+};
+
 }  // namespace
 
 void SolveJoint(const TextureProblem& problem,
@@ -157,7 +179,9 @@ void SolveJoint(const TextureProblem& problem,
   options.max_trust_region_radius = config.max_joint_radius;
   options.logging_type = ceres::SILENT;
   options.num_threads = 1;  // the pass is parallel itself, in fixed order
-  options.function_tolerance = 1e-9;  // of a cost with the reserve in it
+  EndOfGain end_of_gain(evaluation, config.joint_tolerance);
+  options.callbacks.push_back(&end_of_gain);
+  options.function_tolerance = 0;
   ceres::Solver::Summary solved;
   ceres::Solve(options, &ceres_problem, &solved);
   VLOG(2) << solved.FullReport();

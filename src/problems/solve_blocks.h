@@ -55,12 +55,15 @@ struct SolverConfig {
   bool decouple_warps = false;
   JointMethod joint_method = JointMethod::kConsensus;
   JointLinearSolver joint_linear_solver = JointLinearSolver::kCgnr;
-  // Joint solve: kappa and eta of problems/joint_pass.h, and the largest
-  // trust-region radius, which with the pose prior holds soft gauge directions.
-  int max_joint_iterations = 5;
+  // A joint solve ends after so many iterations, or after a step that lowers
+  // the objective by less than this share (>= 0).
+  int max_joint_iterations = 10;
+  double joint_tolerance = 2e-5;
   // The Hessian is built and factored anew at every so many points; the
   // gradient always is. >= 1.
   int joint_hessian_every = 3;
+  // kappa and eta of problems/joint_pass.h, and the largest trust-region
+  // radius, which with the pose prior holds soft gauge directions.
   double joint_common_share = 0.99;
   double joint_own_share = 0.1;
   double max_joint_radius = 1e5;

@@ -90,6 +90,8 @@ TEST(StageSettings, EveryOptionBelongsToOneStage) {
       {Stage::kPhotometric,
        [](auto* o) { o->photometric.solver.max_joint_iterations = 77; }},
       {Stage::kPhotometric,
+       [](auto* o) { o->photometric.solver.joint_tolerance = 0.5; }},
+      {Stage::kPhotometric,
        [](auto* o) { o->photometric.formulation.plane = PlaneKind::kRaw4; }},
       {Stage::kPhotometric,
        [](auto* o) { o->photometric.formulation.manifold = PoseKind::kRight; }},

@@ -175,6 +175,33 @@ TEST_F(JointStep, OnePhaseLowersTheObjectiveMoreThanAnAlternationRound) {
   EXPECT_LT(summary.after.Objective(), current.Objective());
 }
 
+// Breaks when the tolerance is taken of something else than the objective, ends
+// a solve before its first step, or gives that step back.
+TEST_F(JointStep, EndsAfterAStepOfLittleGainAndKeepsIt) {
+  const EnergyTerms before = EvaluateEnergy(scene_.problem, weights_, state_);
+  const auto solve = [&](double tolerance, int* iterations) {
+    SolverConfig config;
+    config.remove_common_motion = false;
+    config.joint_tolerance = tolerance;
+    SolverMemory memory;
+    ReconState joint = state_;
+    const PhaseSummary summary = SolveBlocks(
+        scene_.problem, weights_, kJoint, config, before, &memory, &joint);
+    EXPECT_TRUE(summary.accepted);
+    *iterations = summary.iterations;
+    return summary.after.Objective();
+  };
+  int iterations[3];
+  const double all = solve(0, &iterations[0]);
+  const double some = solve(1e-3, &iterations[1]);
+  const double one = solve(1, &iterations[2]);
+  EXPECT_EQ(iterations[0], 1 + SolverConfig().max_joint_iterations);
+  EXPECT_LT(one, before.Objective());
+  EXPECT_LT(iterations[1], iterations[0]);
+  EXPECT_GT(iterations[1], iterations[2]);
+  EXPECT_NEAR(some, all, 3e-3 * all);
+}
+
 // A Hessian that is kept for the whole solve changes the way, not the descent:
 // the gradient is that of every point. Breaks if residuals are kept with it.
 TEST_F(JointStep, AnOldHessianComesToTheSameEnergy) {
