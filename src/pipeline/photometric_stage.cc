@@ -3,25 +3,21 @@
 #include "pipeline/photometric_stage.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
+#include <memory>
+#include <utility>
 
+#include "pipeline/photometric_level.h"
 #include "pipeline/texel_sampler.h"
 #include "problems/color_step.h"
 #include "texture/fingerprint.h"
+#include "util/background.h"
 #include "util/parallel_for.h"
 #include "util/warnings.h"
 
 namespace facet {
 namespace {
-
-ImageView<float> ViewOf(const cv::Mat& image) {
-  return {image.ptr<float>(),
-          image.cols,
-          image.rows,
-          static_cast<ptrdiff_t>(image.step1())};
-}
 
 std::string PhaseLine(const std::string& round,
                       const std::string& phase,
@@ -83,120 +79,6 @@ std::string ExposureLine(const ExposureCalibration& exposure) {
   return line;
 }
 
-struct StageInputs {
-  const PhotometricOptions& options;
-  const RgbdSequence& sequence;
-  const std::vector<Pose>& cam_from_world;
-  const std::vector<Eigen::Vector3d>& anchors;
-  const std::vector<DepthMoment>& depth_moments;
-  const std::vector<SurfaceMoments>& surface;
-  double texel_size_m;
-};
-
-// The problem of a pyramid level, with the images that it reads.
-class Level {
- public:
-  // `images` and `sampled` are of that level.
-  Level(const StageInputs& inputs,
-        const KeyframeImages& images,
-        int level,
-        int stride,
-        SampledTexels sampled)
-      : images_(images), smoothed_(inputs.options.smoothing_sigma_px > 0) {
-    const PhotometricOptions& options = inputs.options;
-    problem_.formulation = options.formulation;
-    problem_.camera = inputs.sequence.calibration().color.Level(level);
-    problem_.lattice = {options.warp_columns,
-                        options.warp_rows,
-                        problem_.camera.width,
-                        problem_.camera.height};
-    for (size_t k = 0; k < images_.size(); ++k) {
-      problem_.images.push_back(ViewOf(images_.smooth[k]));
-    }
-    if (options.solver.trace_rms_grey) MakeLuma();
-    if (options.formulation.channels == Channels::kRgb) {
-      AddChannels(options.smoothing_sigma_px);
-    }
-    problem_.texels = std::move(sampled.texels);
-    problem_.observations = std::move(sampled.observations);
-    problem_.tiles = std::move(sampled.tiles);
-    problem_.anchors = inputs.anchors;
-    problem_.initial_cam_from_world = inputs.cam_from_world;
-    problem_.depth_moments = inputs.depth_moments;
-    problem_.surface = inputs.surface;
-    problem_.texels_per_m2 = std::pow(stride * inputs.texel_size_m, -2);
-    if (images_.store.InFile()) {
-      problem_.release_images = [this](int k) { Release(k); };
-    }
-    FinishTextureProblem(&problem_);
-  }
-  Level(const Level&) = delete;  // the problem refers to it
-  Level& operator=(const Level&) = delete;
-
-  const TextureProblem& problem() const { return problem_; }
-
-  // With rms_grey, for which luma is made if it is not kept.
-  EnergyTerms Evaluate(const EnergyWeights& weights, const ReconState& state) {
-    const bool kept = !luma_.empty();
-    if (!kept) MakeLuma();
-    const EnergyTerms terms = EvaluateEnergy(problem_, weights, state, true);
-    if (!kept) {
-      problem_.raw_images.clear();
-      luma_.clear();
-    }
-    return terms;
-  }
-
-  void AddTerms(const std::vector<WeightedTerm>& terms,
-                const ReconState& start,
-                double texel_weight) {
-    facet::AddTerms(terms, start, texel_weight, &problem_);
-  }
-
- private:
-  void MakeLuma() {
-    luma_ = images_.smooth;  // headers only
-    if (smoothed_) {
-      ParallelFor(0, luma_.size(), [&](size_t k) {
-        luma_[k] = images_.store.Keep(LumaOf(images_, k));
-      });
-    }
-    for (const cv::Mat& luma : luma_) {
-      problem_.raw_images.push_back(ViewOf(luma));
-    }
-  }
-
-  void AddChannels(double sigma) {
-    channels_.resize(images_.size());
-    ParallelFor(0, channels_.size(), [&](size_t k) {
-      channels_[k] =
-          SmoothChannels(images_.rgb[k], images_.ExposureOf(k), sigma);
-      for (cv::Mat& channel : channels_[k]) {
-        channel = images_.store.Keep(channel);
-      }
-    });
-    problem_.more_images.resize(2);
-    for (size_t k = 0; k < channels_.size(); ++k) {
-      problem_.images[k] = ViewOf(channels_[k][0]);
-      problem_.more_images[0].push_back(ViewOf(channels_[k][1]));
-      problem_.more_images[1].push_back(ViewOf(channels_[k][2]));
-    }
-  }
-
-  void Release(int k) const {
-    ReleasePages(images_.smooth[k]);
-    if (!luma_.empty()) ReleasePages(luma_[k]);
-    if (channels_.empty()) return;
-    for (const cv::Mat& channel : channels_[k]) ReleasePages(channel);
-  }
-
-  KeyframeImages images_;
-  bool smoothed_;
-  std::vector<cv::Mat> luma_;
-  std::vector<std::array<cv::Mat, 3>> channels_;
-  TextureProblem problem_;
-};
-
 // Runs the schedule on poses and planes of `state` (colours are those of the
 // problem) and appends to the trace.
 void RunLevel(const TextureProblem& problem,
@@ -234,6 +116,53 @@ void RunLevel(const TextureProblem& problem,
     row.wall_s += wall_s;
     row.cpu_s += cpu_s;
     trace->rows.push_back(row);
+  }
+}
+
+// All levels but the finest, from the coarsest on. While a level is solved the
+// next one is made, unless memory is short. Takes their samples.
+void RunCoarseLevels(const LevelInputs& inputs,
+                     const KeyframeImages& images,
+                     const std::vector<int>& strides,
+                     const EnergyWeights& weights,
+                     const Schedule& schedule,
+                     const ReconState& start,
+                     const std::function<void(const std::string&)>& print,
+                     std::vector<SampledTexels>* samples,
+                     ReconState* state,
+                     Trace* trace) {
+  const PhotometricOptions& options = inputs.options;
+  const auto weights_of = [&](int level) {
+    EnergyWeights scaled = weights;
+    scaled.texel_weight *= 1 << (2 * level);
+    return scaled;
+  };
+  const auto make = [&](int level) {
+    auto made = std::make_unique<PhotometricLevel>(
+        inputs,
+        PyramidLevel(images, level, options.smoothing_sigma_px),
+        level,
+        strides[level],
+        std::move((*samples)[level]));
+    made->AddTerms(options.terms, start, weights_of(level).texel_weight);
+    return made;
+  };
+  std::unique_ptr<PhotometricLevel> next;
+  for (int level = static_cast<int>(strides.size()) - 1; level > 0; --level) {
+    const std::unique_ptr<PhotometricLevel> current =
+        next ? std::move(next) : make(level);
+    Background making([&] {
+      if (level > 1 && !images.store.InFile()) next = make(level - 1);
+    });
+    RunLevel(current->problem(),
+             weights_of(level),
+             options,
+             WithoutWarps(schedule),
+             level,
+             print,
+             state,
+             trace);
+    making.Finish();
   }
 }
 
@@ -325,6 +254,10 @@ PhotometricResult RunPhotometricStage(
   }
   std::vector<SampledTexels> samples = sampler.Sample(strides);
   SampledTexels& sampled = samples[0];
+  Background fingerprint([&] {
+    result.observation_fingerprint =
+        ObservationFingerprint(sampled.texels, sampled.observations);
+  });
   if (options.exposure) {
     result.exposure =
         CalibrateExposures(sampled.texels,
@@ -340,8 +273,7 @@ PhotometricResult RunPhotometricStage(
       result.exposure.exposures, options.smoothing_sigma_px, keyframe_images);
   const KeyframeImages& images = *keyframe_images;
   result.texels = sampled.texels.size();
-  result.observation_fingerprint =
-      ObservationFingerprint(sampled.texels, sampled.observations);
+  fingerprint.Finish();
   result.visibility = sampled.counts;
 
   const Schedule schedule =
@@ -361,14 +293,14 @@ PhotometricResult RunPhotometricStage(
                                         cam_from_world,
                                         DepthMomentOptions());
   }
-  const StageInputs inputs = {options,
+  const LevelInputs inputs = {options,
                               sequence,
                               cam_from_world,
                               sampler.anchors(),
                               depth_moments,
                               surface,
                               atlas.spacing_m};
-  Level finest(inputs, images, 0, result.stride, std::move(sampled));
+  PhotometricLevel finest(inputs, images, 0, result.stride, std::move(sampled));
   const TextureProblem& problem = finest.problem();
   result.lattice = problem.lattice;
   ReconState state = InitialState(problem, planes);
@@ -383,27 +315,23 @@ PhotometricResult RunPhotometricStage(
   print(
       "  round  phase            E_c   lambda1 E_p   lambda2 E_s        E_tex"
       "     others  rms grey  result    wall s");
-  result.initial = finest.Evaluate(weights, state);
+  // Coarse levels leave threads idle, and do not need to know this.
+  Background initial([&] { result.initial = finest.Evaluate(weights, start); });
+  if (images.store.InFile()) initial.Finish();  // not the memory of both
+  RunCoarseLevels(inputs,
+                  images,
+                  strides,
+                  weights,
+                  schedule,
+                  start,
+                  print,
+                  &samples,
+                  &state,
+                  &result.trace);
+  initial.Finish();
+  result.trace.initial = result.initial;
   print(PhaseLine(
       "0", "start", result.initial, weights.lambda1, weights.lambda2, "", 0));
-  result.trace.initial = result.initial;
-  for (int level = levels - 1; level > 0; --level) {
-    const KeyframeImages reduced =
-        PyramidLevel(images, level, options.smoothing_sigma_px);
-    Level coarse(
-        inputs, reduced, level, strides[level], std::move(samples[level]));
-    EnergyWeights coarse_weights = weights;
-    coarse_weights.texel_weight *= 1 << (2 * level);
-    coarse.AddTerms(options.terms, start, coarse_weights.texel_weight);
-    RunLevel(coarse.problem(),
-             coarse_weights,
-             options,
-             WithoutWarps(schedule),
-             level,
-             print,
-             &state,
-             &result.trace);
-  }
   if (levels > 1) {
     UndoIfWorse(
         problem, weights, start, result.initial.Objective(), print, &state);

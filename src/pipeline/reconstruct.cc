@@ -15,6 +15,7 @@
 #include "pipeline/report.h"
 #include "pipeline/stage_clock.h"
 #include "util/atomic_file.h"
+#include "util/background.h"
 #include "util/errors.h"
 #include "util/parallel_for.h"
 #include "util/resources.h"
@@ -272,13 +273,15 @@ class Run {
       return;
     }
     BeginWriting();
-    LoadForTexture();
     std::vector<SurfaceMoments> surface;
-    if (options_.plane_init == PlaneInit::kDense) {
+    Background surface_moments([&] {
+      if (options_.plane_init != PlaneInit::kDense) return;
       surface = ClusterMoments(dense_.mesh,
                                dense_.partition.face_cluster,
                                dense_.partition.clusters.size());
-    }
+    });
+    LoadForTexture();
+    surface_moments.Finish();
     const PhotometricResult result = RunPhotometricStage(simplified_.mesh,
                                                          simplified_.partition,
                                                          initial_planes_,
