@@ -94,8 +94,8 @@ DEFINE_int32(joint_iterations,
              "iterations of a joint solve, at most");
 DEFINE_double(joint_tolerance,
               SolverConfig().joint_tolerance,
-              "a joint solve ends after a step that lowers the objective by "
-              "less than this share");
+              "a joint solve (but schur, inner) ends after a step that changes "
+              "the objective by less than this share");
 DEFINE_int32(joint_hessian_every,
              SolverConfig().joint_hessian_every,
              "joint solves build the Hessian anew every so many iterations");

@@ -13,8 +13,6 @@
 #include "problems/color_step.h"
 #include "texture/fingerprint.h"
 #include "util/background.h"
-#include "util/parallel_for.h"
-#include "util/warnings.h"
 
 namespace facet {
 namespace {

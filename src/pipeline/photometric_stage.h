@@ -38,8 +38,8 @@ struct PhotometricOptions {
   // warps, on observations of their own, and are left out where images would be
   // smaller than 24 px; 1 = none.
   int levels = 3;
-  // Joint solves of poses, planes and colours first, without warp, then the
-  // warps: the measured best (docs/ablations.md). The paper: 10x[C; Phi; T+F].
+  // A joint solve of poses, planes and colours first, without warp, then the
+  // warps (docs/ablations.md). The paper: 10x[C; Phi; T+F].
   std::string schedule = "C+Phi+T; 2x[C; F]";
   // Bring the keyframes to a common exposure first (texture/exposure.h); off in
   // the paper.

@@ -73,9 +73,9 @@ MemoryEstimate EstimateMemory(const ReconstructOptions& options,
   const double pixels = static_cast<double>(size.keyframes) * size.image_pixels;
   const bool keeps_luma = p.solver.trace_rms_grey && p.smoothing_sigma_px > 0;
   const double float_bytes = kSmoothBytes + (keeps_luma ? kLumaBytes : 0);
-  // One coarser level of the pyramid at a time.
-  const double coarse_bytes =
-      p.levels > 1 ? 0.25 * (kColorBytes + float_bytes) : 0;
+  // The first coarser level of the pyramid, made while the second is solved.
+  const double coarse_share = p.levels > 2 ? 0.3125 : p.levels > 1 ? 0.25 : 0;
+  const double coarse_bytes = coarse_share * (kColorBytes + float_bytes);
   const double all_mb = (kColorBytes + kDepthBytes) * pixels / kMb;
   const double all_floats_mb = (float_bytes + coarse_bytes) * pixels / kMb;
   double images_mb = all_mb, floats_mb = all_floats_mb, painted_mb = all_mb;

@@ -51,8 +51,13 @@ bool JointCoordinates::Place() {
     const Vector6d step = v - v0;
     const double* from = start_.poses.data() + kPoseSize * k;
     double* to = state_->poses.data() + kPoseSize * k;
+    xi.push_back(Vector6d::Zero());
+    if (step.isZero(0)) {  // exactly there, and not where rounding takes it
+      std::copy(from, from + kPoseSize, to);
+      continue;
+    }
     if (!pose_manifold_->Plus(from, step.data(), to)) return false;
-    xi.push_back(LogSe3(PoseFromBlock(to) * PoseFromBlock(from).Inverse()));
+    xi.back() = LogSe3(PoseFromBlock(to) * PoseFromBlock(from).Inverse());
   }
   std::vector<char> placed(plane_manifolds_.size());
   ParallelFor(0, placed.size(), [&](size_t j) {
@@ -73,8 +78,12 @@ bool JointCoordinates::PlacePlane(int plane, const std::vector<Vector6d>& xi) {
   const Eigen::VectorXd step =
       u - u0 +
       minus * ((*basis_)[plane] * Prediction(system_->planes[plane], xi));
-  return manifold.Plus(
-      from, step.data(), state_->planes.data() + kPlaneSize * plane);
+  double* to = state_->planes.data() + kPlaneSize * plane;
+  if (step.isZero(0)) {
+    std::copy(from, from + kPlaneSize, to);
+    return true;
+  }
+  return manifold.Plus(from, step.data(), to);
 }
 
 void JointCoordinates::Linearise(const JointSystem& system,

@@ -56,7 +56,6 @@ void JointEvaluation::RunPass() {
     terms_.HoldCommonMotion(problem_, weights_.texel_weight * pass_.squares);
   }
   valid_ = terms_.Evaluate(*state_);
-  if (!valid_) return;
   // weighted E_c, the terms, and with planes lambda1 E_p.
   cost_ = weights_.texel_weight * pass_.squares + terms_.cost();
   for (int j = 0; coordinates_->with_planes() && j < problem_.NumPlanes();
@@ -66,7 +65,8 @@ void JointEvaluation::RunPass() {
     cost_ += weights_.texel_weight * weights_.lambda1 *
              phi.dot(problem_.moments[j] * phi);
   }
-  has_pass_ = true;
+  valid_ = valid_ && std::isfinite(cost_);
+  has_pass_ = valid_;
 }
 
 void JointEvaluation::ComputeSystem() {
@@ -99,6 +99,7 @@ void JointEvaluation::FillPoseRows() {
 }
 
 void JointEvaluation::FactorHessian(double weight, double plane_weight) {
+  system_ = JointSystem();  // not the memory of two factors
   hessian_basis_.clear();
   if (coordinates_->with_planes()) hessian_basis_ = pass_.plane_axes;
   JointHessian hessian =

@@ -10,6 +10,24 @@
 namespace facet {
 namespace {
 
+// Keyframes that see the plane, ascending.
+std::vector<int> KeyframesOfPlane(const TextureProblem& problem, int plane) {
+  std::vector<int> keyframes;
+  for (size_t t = problem.plane_tile_begin[plane];
+       t < problem.plane_tile_begin[plane + 1];
+       ++t) {
+    for (size_t s = problem.tiles[t].segment_begin;
+         s < problem.tiles[t].segment_end;
+         ++s) {
+      keyframes.push_back(problem.segments[s].keyframe);
+    }
+  }
+  std::sort(keyframes.begin(), keyframes.end());
+  keyframes.erase(std::unique(keyframes.begin(), keyframes.end()),
+                  keyframes.end());
+  return keyframes;
+}
+
 // For each keyframe the segments that belong to it, as (tile, segment).
 std::vector<std::vector<std::pair<uint32_t, uint32_t>>> SegmentsByFrame(
     const TextureProblem& problem) {
@@ -123,23 +141,6 @@ void AddPlaneBlocks(const TextureProblem& problem,
 }
 
 }  // namespace
-
-std::vector<int> KeyframesOfPlane(const TextureProblem& problem, int plane) {
-  std::vector<int> keyframes;
-  for (size_t t = problem.plane_tile_begin[plane];
-       t < problem.plane_tile_begin[plane + 1];
-       ++t) {
-    for (size_t s = problem.tiles[t].segment_begin;
-         s < problem.tiles[t].segment_end;
-         ++s) {
-      keyframes.push_back(problem.segments[s].keyframe);
-    }
-  }
-  std::sort(keyframes.begin(), keyframes.end());
-  keyframes.erase(std::unique(keyframes.begin(), keyframes.end()),
-                  keyframes.end());
-  return keyframes;
-}
 
 JointHessian ZeroJointHessian(const TextureProblem& problem,
                               size_t num_planes) {

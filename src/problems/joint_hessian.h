@@ -14,7 +14,7 @@ namespace facet {
 
 // Of one plane, over the basis of its increments.
 struct JointPlaneBlocks {
-  std::vector<int> keyframes;  // that see the plane, ascending
+  std::vector<int> keyframes;  // that see it or share a term, ascending
   Eigen::Matrix3d plane = Eigen::Matrix3d::Zero();
   Eigen::Matrix<double, 3, Eigen::Dynamic> poses;  // 6 columns a keyframe
 };
@@ -26,10 +26,7 @@ struct JointHessian {
 
 using PlaneBasis = Eigen::Matrix<double, 4, 3>;
 
-// Keyframes that see the plane, ascending.
-std::vector<int> KeyframesOfPlane(const TextureProblem& problem, int plane);
-
-// All blocks, zero.
+// All blocks, zero, for the keyframes that see a plane.
 JointHessian ZeroJointHessian(const TextureProblem& problem, size_t num_planes);
 
 // From the tensors of `pass` (its header has the formula); `common_share` is

@@ -9,6 +9,7 @@
 #include <glog/logging.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "problems/color_step.h"
 #include "problems/joint_coordinates.h"
@@ -123,9 +124,9 @@ void AddBlocks(const TextureProblem& problem,
   }
 }
 
-// Ends the solve after a step that lowered the objective by less than a share.
-// (Ceres's own tolerance is of a cost with the reserve in it, and would drop
-// that step.)
+// Ends the solve after a step that changed the objective by less than a share,
+// or would have: refused. (Ceres's own tolerance is of a cost with the reserve
+// in it, and would drop a step that was accepted.)
 class EndOfGain : public ceres::IterationCallback {
  public:
   EndOfGain(const JointEvaluation& evaluation, double tolerance)
@@ -134,8 +135,8 @@ class EndOfGain : public ceres::IterationCallback {
   ceres::CallbackReturnType operator()(
       const ceres::IterationSummary& step) override {
     const double objective = step.cost - 0.5 * evaluation_.reserve();
-    return step.iteration > 0 && step.step_is_successful &&
-                   step.cost_change < tolerance_ * objective
+    return step.iteration > 0 && step.step_is_valid &&
+                   std::abs(step.cost_change) < tolerance_ * objective
                ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
                : ceres::SOLVER_CONTINUE;
   }
@@ -154,6 +155,7 @@ void SolveJoint(const TextureProblem& problem,
                 SolverMemory* memory,
                 ReconState* state,
                 PhaseSummary* summary) {
+  const ReconState start = *state;
   JointCoordinates coordinates(problem, (blocks & kPlanes) != 0, state);
   JointEvaluation evaluation(problem, weights, config, state, &coordinates);
   ceres::Problem::Options problem_options;
@@ -202,7 +204,12 @@ void SolveJoint(const TextureProblem& problem,
                    1.0,
                    config.max_joint_radius);
   }
-  CHECK(coordinates.Place()) << "the point was evaluated before";
+  if (solved.IsSolutionUsable()) {
+    CHECK(coordinates.Place()) << "the point was evaluated before";
+  } else {
+    state->poses = start.poses;
+    state->planes = start.planes;
+  }
   SolveColors(problem, state);
 }
 

@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: MIT
 //
 // The Gauss-Newton system of the joint solve (problems/joint_pass.h) over all
-// poses and planes, as the factor that Ceres gets: with H + shift = R^T R the
-// rows R and the residual R^-T g have the exact gradient and the chosen
-// Hessian.
+// poses and planes, as a factor: with H + shift = R^T R the rows R and the
+// residual R^-T g have the exact gradient and the chosen Hessian.
 //
 // Planes do not interact (a texel has one plane), so they come first in the
 // ordering and R is block upper triangular: 3 rows a plane over (plane, poses
-// that see it), then 6 rows a pose over (pose, later poses).
+// that see it), then 6 rows a pose over (pose, later poses). In the coordinates
+// of problems/joint_coordinates.h, which Ceres gets, planes are by themselves.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,7 +19,7 @@
 namespace facet {
 
 struct JointPlaneRows {
-  std::vector<int> keyframes;  // that see the plane, ascending
+  std::vector<int> keyframes;  // that see it or share a term, ascending
   Eigen::Matrix3d diagonal;    // over the plane's tangent, upper
   Eigen::Matrix<double, 3, Eigen::Dynamic> poses;  // 6 columns a keyframe
   Eigen::Vector3d residual;

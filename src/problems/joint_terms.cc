@@ -36,9 +36,11 @@ JointTerms::JointTerms(const TextureProblem& problem,
                        bool with_planes) {
   const TermBlocks terms(problem, weights);
   for (const TermBlock& term : terms.blocks()) {
-    if (term.keyframe < 0 && !with_planes) continue;
+    const bool plane_moves =
+        term.plane >= 0 && with_planes && problem.plane_texels[term.plane] > 0;
+    if (term.keyframe < 0 && !plane_moves) continue;
     const int rows = term.cost->num_residuals();
-    blocks_.push_back({term, Eigen::VectorXd(rows), {}, {}});
+    blocks_.push_back({term, plane_moves, Eigen::VectorXd(rows), {}, {}});
     blocks_.back().by_pose.resize(rows, 6);
     blocks_.back().by_plane.resize(rows, 4);
   }
@@ -121,7 +123,7 @@ void JointTerms::AddGradient(JointGradient* gradient) const {
       gradient->poses[block.term.keyframe] +=
           block.by_pose.transpose() * block.residual;
     }
-    if (block.term.plane >= 0) {
+    if (block.plane_moves) {
       gradient->planes[block.term.plane] +=
           block.by_plane.transpose() * block.residual;
     }
@@ -140,7 +142,7 @@ void JointTerms::AddHessian(const std::vector<PlaneBasis>& plane_basis,
       hessian->poses.block<6, 6>(6 * k, 6 * k) +=
           block.by_pose.transpose() * block.by_pose;
     }
-    if (j < 0 || plane_basis.empty()) continue;
+    if (!block.plane_moves) continue;
     JointPlaneBlocks& plane = hessian->planes[j];
     const Eigen::Matrix<double, Eigen::Dynamic, 3> rows =
         block.by_plane * plane_basis[j];

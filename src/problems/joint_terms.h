@@ -20,7 +20,9 @@ namespace facet {
 
 class JointTerms {
  public:
-  // Without planes, blocks of planes alone are left out.
+  // Planes that do not move, those that no keyframe sees or all without
+  // `with_planes`, are constants of their blocks; blocks of nothing else are
+  // left out.
   JointTerms(const TextureProblem& problem,
              const EnergyWeights& weights,
              bool with_planes);
@@ -41,6 +43,7 @@ class JointTerms {
  private:
   struct Block {
     TermBlock term;
+    bool plane_moves;
     Eigen::VectorXd residual;
     Eigen::Matrix<double, Eigen::Dynamic, 6> by_pose;   // left tangent
     Eigen::Matrix<double, Eigen::Dynamic, 4> by_plane;  // ambient (n, d)

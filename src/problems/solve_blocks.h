@@ -55,8 +55,9 @@ struct SolverConfig {
   bool decouple_warps = false;
   JointMethod joint_method = JointMethod::kConsensus;
   JointLinearSolver joint_linear_solver = JointLinearSolver::kCgnr;
-  // A joint solve ends after so many iterations, or after a step that lowers
-  // the objective by less than this share (>= 0).
+  // A joint solve ends after so many iterations, or after a step that changes
+  // its part of the objective by less than this share (>= 0; kSchur and kInner
+  // end by Ceres's own tolerances).
   int max_joint_iterations = 10;
   double joint_tolerance = 2e-5;
   // The Hessian is built and factored anew at every so many points; the

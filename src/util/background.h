@@ -15,7 +15,8 @@ class Background {
   // Finish. Loops in it are shared among threads (ParallelFor).
   explicit Background(std::function<void()> work);
 
-  // Drops what has not begun and waits for what has.
+  // Drops what has not begun, loops of the work among it, and waits for what
+  // has: without Finish its result is of no use.
   ~Background();
   Background(const Background&) = delete;
   Background& operator=(const Background&) = delete;

@@ -5,13 +5,17 @@
 #include "problems/joint_coordinates.h"
 
 #include <ceres/autodiff_cost_function.h>
+#include <ceres/sized_cost_function.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
+#include "problems/color_step.h"
 #include "problems/energy.h"
 #include "problems/gauge.h"
+#include "problems/joint_step.h"
 #include "problems/joint_terms.h"
 #include "tests/support/tiny_scene.h"
 
@@ -29,6 +33,8 @@ class JointCoordinatesTest : public testing::Test {
     PerturbPoses(0.003, 0.004, 1, &state_);
     PerturbPlanes(0.003, 0.003, 2, &state_);
     weights_ = StartFrom(&state_, &scene_.problem);
+    PerturbPoses(
+        0.001, 0.001, 3, &state_);  // off the centre of prior and gauge
     weights_.texel_weight = kWeight;
     weights_.depth_weight = 0.03;
   }
@@ -264,6 +270,87 @@ TEST_F(JointCoordinatesTest, TermsMayTieAPlaneToAnyPose) {
     EXPECT_EQ(block,
               without.planes[0].poses.middleCols<6>(a == 0 ? 0 : 6 * (a - 1)));
   }
+}
+
+// Fails, as a square root of what is no longer positive would.
+class NoNumberAwayFromStart : public ceres::SizedCostFunction<1, 7> {
+ public:
+  NoNumberAwayFromStart(const double* start, bool refuses)
+      : start_(start, start + 7), refuses_(refuses) {}
+
+  bool Evaluate(double const* const* parameters,
+                double* residuals,
+                double** jacobians) const override {
+    const bool there = std::equal(start_.begin(), start_.end(), parameters[0]);
+    residuals[0] = there ? 0.0 : std::nan("");
+    if (jacobians && jacobians[0]) std::fill_n(jacobians[0], 7, 0.0);
+    return there || !refuses_;
+  }
+
+ private:
+  std::vector<double> start_;
+  bool refuses_;
+};
+
+// Breaks when a point where a term has no value counts as one, at cost 0, or
+// when a solve that finds no other point does not give back its start.
+TEST_F(JointCoordinatesTest, PointsWithoutAValueAreRefused) {
+  for (const bool refuses : {false, true}) {
+    scene_.problem.terms = {{"bad",
+                             {{std::make_shared<NoNumberAwayFromStart>(
+                                   state_.poses.data(), refuses),
+                               0,
+                               -1}}}};
+    ReconState state = state_;
+    SolverMemory memory;
+    PhaseSummary summary;
+    SolveJoint(scene_.problem,
+               weights_,
+               kColors | kPlanes | kPoses,
+               SolverConfig(),
+               &memory,
+               &state,
+               &summary);
+    EXPECT_EQ(state.poses, state_.poses);
+    EXPECT_EQ(state.planes, state_.planes);
+  }
+}
+
+// Breaks when a plane that no keyframe sees moves after a term, without E_p or
+// a limit to hold it: the other solvers leave it where it is.
+TEST_F(JointCoordinatesTest, PlanesThatNobodySeesStay) {
+  TextureProblem& problem = scene_.problem;
+  Observations kept;
+  kept.begin.push_back(0);
+  for (int k = 0; k < problem.NumKeyframes(); ++k) {
+    for (size_t i = problem.observations.begin[k];
+         i < problem.observations.begin[k + 1];
+         ++i) {
+      const uint32_t texel = problem.observations.texel[i];
+      if (problem.texels.plane[texel] != 0) kept.texel.push_back(texel);
+    }
+    kept.begin.push_back(kept.texel.size());
+  }
+  problem.observations = kept;
+  problem.tiles.clear();
+  FinishTextureProblem(&problem);
+  ASSERT_EQ(problem.plane_texels[0], 0u);
+  SolveColors(problem, &state_);
+  ReconState state = state_;
+  SolverMemory memory;
+  PhaseSummary summary;
+  SolveJoint(problem,
+             weights_,
+             kColors | kPlanes | kPoses,
+             SolverConfig(),
+             &memory,
+             &state,
+             &summary);
+  EXPECT_NE(state.poses, state_.poses);
+  for (int i = 0; i < kPlaneSize; ++i) {
+    EXPECT_EQ(state.planes[i], state_.planes[i]);
+  }
+  EXPECT_NE(state.planes[kPlaneSize], state_.planes[kPlaneSize]);
 }
 
 }  // namespace

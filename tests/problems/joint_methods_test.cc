@@ -413,6 +413,7 @@ TEST_F(JointMethods, CarryTheTrustRegion) {
 // CGNR and Cholesky differ in how, not in what they solve.
 TEST_F(JointMethods, LinearSolversReachTheSameEnergy) {
   const ReconState start = state_;
+  config_.joint_linear_solver = JointLinearSolver::kCholesky;
   const double direct =
       Solve(JointMethod::kConsensus, kAll, 30).after.Objective();
   state_ = start;
