@@ -85,6 +85,21 @@ class JointCoordinatesTest : public testing::Test {
     SetResiduals(gradient, basis_, &system_);
   }
 
+  // The state after one joint solve.
+  ReconState Solved() const {
+    ReconState state = state_;
+    SolverMemory memory;
+    PhaseSummary summary;
+    SolveJoint(scene_.problem,
+               weights_,
+               kColors | kPlanes | kPoses,
+               SolverConfig(),
+               &memory,
+               &state,
+               &summary);
+    return state;
+  }
+
   TinyScene scene_;
   ReconState state_;
   EnergyWeights weights_;
@@ -301,16 +316,7 @@ TEST_F(JointCoordinatesTest, PointsWithoutAValueAreRefused) {
                                    state_.poses.data(), refuses),
                                0,
                                -1}}}};
-    ReconState state = state_;
-    SolverMemory memory;
-    PhaseSummary summary;
-    SolveJoint(scene_.problem,
-               weights_,
-               kColors | kPlanes | kPoses,
-               SolverConfig(),
-               &memory,
-               &state,
-               &summary);
+    const ReconState state = Solved();
     EXPECT_EQ(state.poses, state_.poses);
     EXPECT_EQ(state.planes, state_.planes);
   }
@@ -336,16 +342,7 @@ TEST_F(JointCoordinatesTest, PlanesThatNobodySeesStay) {
   FinishTextureProblem(&problem);
   ASSERT_EQ(problem.plane_texels[0], 0u);
   SolveColors(problem, &state_);
-  ReconState state = state_;
-  SolverMemory memory;
-  PhaseSummary summary;
-  SolveJoint(problem,
-             weights_,
-             kColors | kPlanes | kPoses,
-             SolverConfig(),
-             &memory,
-             &state,
-             &summary);
+  const ReconState state = Solved();
   EXPECT_NE(state.poses, state_.poses);
   for (int i = 0; i < kPlaneSize; ++i) {
     EXPECT_EQ(state.planes[i], state_.planes[i]);
