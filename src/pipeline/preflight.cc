@@ -22,7 +22,7 @@ constexpr double kColorBytes = 3, kDepthBytes = 2;  // a pixel
 constexpr double kLumaBytes = 4, kSmoothBytes = 4;  // while optimising
 constexpr double kDrawingMb = 130, kBytesPerDrawnFace = 100;
 constexpr double kSolverMb = 180;
-constexpr double kBytesPerPair = 1150;  // of keyframes: 6 x 6 blocks, 4 copies
+constexpr double kBytesPerPair = 850;  // of keyframes: 3 copies of 6 x 6
 constexpr double kBytesPerSampledTexel = 100, kBytesPerObservation = 11;
 constexpr double kBytesPerAtlasTexel = 150;
 constexpr double kSeenShare = 0.15;  // of the keyframes see a texel

@@ -49,7 +49,7 @@ struct MemoryEstimate {
 //   photometric  240 MB + 70 bytes a face + 13 bytes a pixel of the keyframes
 //                (9 without smoothing or rms_grey after every phase), more with
 //                coarser levels + 100 bytes a sampled texel + 11 bytes an
-//                observation + 1150 bytes a pair of keyframes (the Hessian)
+//                observation + 850 bytes a pair of keyframes (the Hessian)
 //   export       60 MB + 70 bytes a face + 5 bytes a pixel + 150 bytes a texel
 //                of the atlas
 // Texels are area / texel_size^2, sampled ones 1 / stride^2 of them, each seen

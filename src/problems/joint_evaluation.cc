@@ -91,9 +91,11 @@ void JointEvaluation::FillPoseRows() {
     const int k = static_cast<int>(row);
     double* cell = pose_rows_.data() + CellIndex(k) * kCell;
     for (int other = k; other < num_keyframes; ++other, cell += kCell) {
+      Eigen::Matrix<double, 6, 6> r =
+          system_.poses.block<6, 6>(6 * k, 6 * other);
+      if (other == k) r = r.triangularView<Eigen::Upper>();
       Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>> j(cell);
-      j.noalias() = system_.poses.block<6, 6>(6 * k, 6 * other) *
-                    coordinates_->LeftFromPose(other);
+      j.noalias() = r * coordinates_->LeftFromPose(other);
     }
   });
 }

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "problems/joint_system.h"
 
-#include <Eigen/Cholesky>
-#include <algorithm>
+#include <utility>
 
 #include "costs/plane_manifold.h"
+#include "problems/dense_factor.h"
 #include "util/parallel_for.h"
 
 namespace facet {
@@ -15,7 +15,6 @@ namespace {
 // common part has been subtracted.
 constexpr double kJointShift = 1e-5;
 constexpr double kAbsoluteShift = 1e-12;
-constexpr Eigen::Index kBlock = 60;  // rows that are factored together
 
 template <typename Matrix>
 void ShiftDiagonal(Matrix* h) {
@@ -46,57 +45,6 @@ void SubtractPlanes(const JointSystem& system,
       }
     }
   });
-}
-
-// R of R^T R = A in place of A, both by their upper triangles, block row by
-// block row; the blocks of a row on all threads. Below the diagonal, zeros stay
-// zeros. False if A is not positive.
-bool FactorInPlace(Eigen::MatrixXd* a) {
-  const Eigen::Index n = a->rows();
-  const auto size = [n](Eigen::Index begin) {
-    return std::min(kBlock, n - begin);
-  };
-  for (Eigen::Index k = 0; k < n; k += kBlock) {
-    auto corner = a->block(k, k, size(k), size(k));
-    const Eigen::LLT<Eigen::MatrixXd, Eigen::Upper> llt(corner);
-    if (llt.info() != Eigen::Success) return false;
-    corner = llt.matrixU();
-    const size_t num_right = (n - k - 1) / kBlock;
-    ParallelFor(0, num_right, [&](size_t i) {
-      const Eigen::Index j = k + kBlock * (static_cast<Eigen::Index>(i) + 1);
-      auto panel = a->block(k, j, kBlock, size(j));
-      corner.transpose().triangularView<Eigen::Lower>().solveInPlace(panel);
-    });
-    ParallelFor(0, num_right, [&](size_t i) {
-      const Eigen::Index j = k + kBlock * (static_cast<Eigen::Index>(i) + 1);
-      const Eigen::Index below = j + size(j) - k - kBlock;
-      a->block(k + kBlock, j, below, size(j)).noalias() -=
-          a->block(k, k + kBlock, kBlock, below).transpose() *
-          a->block(k, j, kBlock, size(j));
-    });
-  }
-  return true;
-}
-
-// Upper Cholesky factor of a symmetric matrix given by its upper triangle;
-// raises the diagonal until it exists.
-Eigen::MatrixXd UpperFactor(const Eigen::MatrixXd& upper) {
-  const Eigen::Index n = upper.rows();
-  Eigen::VectorXd diagonal = upper.diagonal();
-  for (double shift = kJointShift;; shift *= 10) {
-    Eigen::MatrixXd factor(n, n);
-    ParallelForChunks(0, n, kBlock, [&](Eigen::Index begin, Eigen::Index end) {
-      for (Eigen::Index i = begin; i < end; ++i) {
-        factor.col(i).head(i) = upper.col(i).head(i);
-        factor(i, i) = diagonal[i];
-        factor.col(i).tail(n - i - 1).setZero();
-      }
-    });
-    if (FactorInPlace(&factor)) return factor;
-    for (Eigen::Index i = 0; i < diagonal.size(); ++i) {
-      diagonal[i] += shift * std::abs(upper(i, i)) + kAbsoluteShift;
-    }
-  }
 }
 
 }  // namespace
@@ -136,13 +84,16 @@ JointSystem FactorJointSystem(const TextureProblem& problem,
     blocks.plane += plane_basis[j].transpose() *
                     (plane_weight * problem.moments[j]) * plane_basis[j];
     ShiftDiagonal(&blocks.plane);
-    rows.diagonal = UpperFactor(blocks.plane);
+    Eigen::MatrixXd diagonal = blocks.plane;
+    FactorUpper(kJointShift, kAbsoluteShift, &diagonal);
+    rows.diagonal = diagonal.triangularView<Eigen::Upper>();
     rows.keyframes = std::move(blocks.keyframes);
     rows.poses = rows.diagonal.transpose().triangularView<Eigen::Lower>().solve(
         blocks.poses);
   });
   SubtractPlanes(system, problem.NumKeyframes(), &hessian.poses);
-  system.poses = UpperFactor(hessian.poses);
+  FactorUpper(kJointShift, kAbsoluteShift, &hessian.poses);
+  system.poses = std::move(hessian.poses);
   return system;
 }
 

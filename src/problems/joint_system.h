@@ -27,9 +27,10 @@ struct JointPlaneRows {
 
 struct JointSystem {
   std::vector<JointPlaneRows> planes;  // empty when planes are fixed
-  Eigen::MatrixXd poses;               // upper triangular, 6K x 6K
-  Eigen::VectorXd pose_residual;       // 6K
-  double explained = 0;                // |R^-T g|^2
+  // 6K x 6K; R is its upper triangle, below the diagonal is no part of it.
+  Eigen::MatrixXd poses;
+  Eigen::VectorXd pose_residual;  // 6K
+  double explained = 0;           // |R^-T g|^2
 };
 
 // Stiffens the plane blocks so that no Gauss-Newton step of a plane by itself

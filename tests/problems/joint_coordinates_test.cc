@@ -139,7 +139,8 @@ TEST_F(JointCoordinatesTest, RowsAreTheGradientByTheOffsets) {
       numeric.push_back((value[1] - value[0]) / (2 * h));
     };
     const Eigen::VectorXd by_pose =
-        system_.poses.transpose() * system_.pose_residual;
+        system_.poses.triangularView<Eigen::Upper>().transpose() *
+        system_.pose_residual;
     for (int k = 0; k < scene_.problem.NumKeyframes(); ++k) {
       const Vector6d by_offset =
           coordinates.LeftFromPose(k).transpose() * by_pose.segment<6>(6 * k);

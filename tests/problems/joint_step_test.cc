@@ -124,7 +124,9 @@ TEST_F(JointStep, FactorKeepsTheGradientOfEveryHessian) {
         ExactHessian(problem, state_, bases, 4.0)}) {
     JointSystem system = FactorJointSystem(problem, hessian, bases, 3.0);
     SetResiduals(GradientOf(problem, pass, state_, 4.0, 3.0), bases, &system);
-    Eigen::VectorXd poses = system.poses.transpose() * system.pose_residual;
+    Eigen::VectorXd poses =
+        system.poses.triangularView<Eigen::Upper>().transpose() *
+        system.pose_residual;
     double explained = system.pose_residual.squaredNorm();
     for (size_t j = 0; j < system.planes.size(); ++j) {
       const JointPlaneRows& rows = system.planes[j];
