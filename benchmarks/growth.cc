@@ -4,7 +4,7 @@
 // How CPU time and memory grow with the scan.
 //
 //   bench-growth observations   of E_c, on 60 keyframes
-//   bench-growth keyframes      at 4 million observations, the default
+//   bench-growth keyframes      at 4 million observations
 //   bench-growth MESH.ply ...   faces: the mesh stages on each
 //   bench-growth plot FILE.csv  what one of these printed, as a log-log plot
 //                               (SVG on stdout)

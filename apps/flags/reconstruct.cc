@@ -107,6 +107,11 @@ DEFINE_double(
 DEFINE_double(simplify_plane_share,
               SimplifyOptions().cluster_plane_share,
               "1 draws vertices into the planes, 0 to the dense surface");
+DEFINE_double(simplify_plane_reach,
+              SimplifyOptions().plane_reach_m,
+              "a face at this distance from its plane counts half as much for "
+              "it, and a tenth at three times the distance [m]; 0 = all the "
+              "same");
 DEFINE_int32(simplify_inner_target,
              SimplifyOptions().inner_target,
              "counts: inner edges left in a cluster");
@@ -238,6 +243,7 @@ void CheckNumbers() {
       {"simplify_border_ratio", 0, 1, true},
       {"simplify_passes", 1, 100},
       {"simplify_plane_share", 0, 1},
+      {"simplify_plane_reach", 0, kMax},
       {"simplify_sweep_ratio", 0},
       {"texel_size", 0.0001, 0.1},
       {"atlas_page_size", 64, 32768},
@@ -293,6 +299,7 @@ void MeshOptions(ReconstructOptions* o) {
   o->simplify.target_faces = FLAGS_simplify_faces;
   o->simplify.faces_per_m2 = FLAGS_simplify_faces_per_m2;
   o->simplify.cluster_plane_share = FLAGS_simplify_plane_share;
+  o->simplify.plane_reach_m = FLAGS_simplify_plane_reach;
   o->simplify.sweep_ratio = FLAGS_simplify_sweep_ratio;
   o->simplify.inner_target = FLAGS_simplify_inner_target;
   o->simplify.border_ratio = FLAGS_simplify_border_ratio;

@@ -32,6 +32,7 @@ void CheckOptions(const SimplifyOptions& o) {
           "error bounds must be positive");
   require(o.cluster_plane_share >= 0 && o.cluster_plane_share <= 1,
           "cluster_plane_share must lie in [0, 1]");
+  require(o.plane_reach_m >= 0, "plane_reach_m must not be negative");
   require(o.cluster_border_weight >= 0 && o.mesh_boundary_weight >= 0 &&
               o.point_share >= 0,
           "weights must not be negative");

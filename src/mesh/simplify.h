@@ -69,10 +69,14 @@ struct SimplifyOptions {
 
   // Quadrics: share of the plane of the cluster against that of the face, in
   // [0, 1]: 1 draws vertices into the planes and to where planes meet, 0 to the
-  // dense surface; weights of the squared edge
-  // lengths of the lines along borders; share of the mean face area that
-  // anchors vertices to themselves.
+  // dense surface. A face at the distance d from its plane has the share
+  //   cluster_plane_share / (1 + (d / plane_reach_m)^2),
+  // so that what does not lie on the plane keeps its shape; 0 = the same at any
+  // distance.
   double cluster_plane_share = 0.8;
+  double plane_reach_m = 0.005;
+  // Weights of the squared edge lengths of the lines along borders; share of
+  // the mean face area that anchors vertices to themselves.
   double cluster_border_weight = 0.05;
   double mesh_boundary_weight = 0.3;
   double point_share = 1e-5;

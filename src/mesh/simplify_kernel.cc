@@ -100,7 +100,7 @@ void Collapser::Impl::BuildQuadrics(const TriMesh& mesh,
                                     const MeshRegions& regions) {
   const double point_weight =
       options.point_share * total_area / std::max(1, counts.faces);
-  const double share = options.cluster_plane_share;
+  const double reach = options.plane_reach_m;
   quadric.reserve(vertices.size());
   for (const VertexData& v : vertices) {
     quadric.push_back(Quadric::Point(v.position, point_weight));
@@ -112,6 +112,11 @@ void Collapser::Impl::BuildQuadrics(const TriMesh& mesh,
     const Eigen::Vector3d n = cross / norm;
     const double w = norm / 6;  // a third of the area, per corner
     const Plane& plane = partition.clusters[label[f]].plane;
+    const double off =
+        reach > 0
+            ? plane.SignedDistance(mesh.FaceCentroid(regions.faces[f])) / reach
+            : 0.0;
+    const double share = options.cluster_plane_share / (1 + off * off);
     const OpenMesh::FaceHandle face(f);
     const VertexHandle first = *kernel.cfv_begin(face);
     Quadric q = Quadric::Plane(

@@ -50,6 +50,7 @@ json SimplifySettings(const ReconstructOptions& o) {
           {"free_error_m", o.simplify.free_error_m},
           {"max_error_m", o.simplify.max_error_m},
           {"cluster_plane_share", o.simplify.cluster_plane_share},
+          {"plane_reach_m", o.simplify.plane_reach_m},
           {"collapse_to_border", o.simplify.collapse_to_border},
           {"keep_mesh_boundary", o.simplify.keep_mesh_boundary}};
 }
@@ -184,6 +185,7 @@ std::string FlagOfSetting(const std::string& setting) {
       {"target_faces", "simplify_faces"},
       {"faces_per_m2", "simplify_faces_per_m2"},
       {"cluster_plane_share", "simplify_plane_share"},
+      {"plane_reach_m", "simplify_plane_reach"},
       {"sweep_ratio", "simplify_sweep_ratio"},
       {"min_depth_m", "min_depth"},
       {"max_depth_m", "max_depth"},

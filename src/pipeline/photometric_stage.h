@@ -28,7 +28,7 @@ struct PhotometricOptions {
   // 0 = the smallest stride that keeps the observations below
   // max_observations. Paper: 1.
   int stride = 0;
-  size_t max_observations = 5000000;
+  size_t max_observations = 7000000;
   double edge_margin_m = TexelOptions().edge_margin_m;  // texture/texels.h
   int tile_texels = 16;  // side of the square tiles (SortTexelsIntoTiles)
   double smoothing_sigma_px = 0.8;        // Gaussian on the luma; paper: none
@@ -40,7 +40,7 @@ struct PhotometricOptions {
   int levels = 3;
   // A joint solve of poses, planes and colours first, without warp, then the
   // warps (docs/ablations.md). The paper: 10x[C; Phi; T+F].
-  std::string schedule = "C+Phi+T; 2x[C; F]";
+  std::string schedule = "C+Phi+T; F; C";
   // Bring the keyframes to a common exposure first (texture/exposure.h); off in
   // the paper.
   bool exposure = true;

@@ -45,7 +45,7 @@ struct GeometryOptions {
   LaplacianBoundary boundary = LaplacianBoundary::kChain;
   LaplacianKind laplacian = LaplacianKind::kGlobal;
   PlaneFreedom freedom = PlaneFreedom::kBand;
-  double band_m = 0.006;  // > 0 [m]
+  double band_m = 0.010;  // > 0 [m]
   // Multiplies E_g by (h / 0.0025 m)^2, so that lambda3 means the same at any
   // spacing of texels (method, Sec. 8.4).
   bool normalize_spacing = true;

@@ -11,9 +11,9 @@
 // ramp from 0 at the image border to 1. Plain averages blur (misalignment,
 // motion, distance); e > 1 leans towards the best view, e -> infinity selects
 // it. A robust pass first drops samples whose luma is far from the weighted
-// median: highlights, people, misregistered edges. The defaults are the plain
-// mean of the authors' code but for the ramp: on real scans every weight tried
-// made held-out views match worse (docs/design.md).
+// median: highlights, people, misregistered edges. The authors' code takes the
+// plain mean, a = b = c = 0; by default a view counts by the pixels it has for
+// a metre of the surface, cos(theta) / z (docs/design.md).
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -38,8 +38,8 @@ enum class BakeSampler {
 };
 
 struct BakeOptions {
-  double angle_power = 0;         // a >= 0
-  double depth_power = 0;         // b >= 0
+  double angle_power = 1;         // a >= 0
+  double depth_power = 1;         // b >= 0
   double sharpness_power = 0;     // c >= 0; 0 = do not measure blur
   double best_view_power = 1;     // e > 0; all powers 0 and e 1: plain mean
   double border_feather_px = 40;  // width of the ramp f; 0 = none

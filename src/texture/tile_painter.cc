@@ -51,15 +51,18 @@ struct TilePainter::TileWork {
         num_blocks((num_texels + kBlock - 1) / kBlock),
         sums(num_blocks),
         points(kBlock * num_blocks),
+        source(num_texels),
         bit(num_texels),
         is_mild(num_texels),
+        power(num_texels, 0.0f),
         lanes(6 * kBlock * num_blocks),
         colors{Lane(0), Lane(1), Lane(2), Lane(3), Lane(4)},
         weight(Lane(5)) {
     const std::vector<uint64_t> seen_well = SeenWell(tile, views);
     const auto to_mild = static_cast<uint32_t>(64 * seen_well.size());
     for (size_t i = 0; i < num_texels; ++i) {
-      bit[i] = texels.source[tile.begin + i] - tile.begin;
+      source[i] = texels.source[tile.begin + i] - tile.begin;
+      bit[i] = source[i];
       is_mild[i] = !(seen_well[bit[i] / 64] >> (bit[i] % 64) & 1);
       if (is_mild[i]) bit[i] += to_mild;
     }
@@ -89,11 +92,13 @@ struct TilePainter::TileWork {
   const size_t num_texels, num_owned, num_blocks;
   ColorSums sums;
   std::vector<PhotoTexel> points;  // of whole blocks
+  std::vector<uint32_t> source;    // of each texel, among them
   std::vector<uint32_t> bit;       // of each texel in the words of a view
   std::vector<uint8_t> is_mild;    // no keyframe sees it by the strict tests
 
   // Of the current view: the blocks, their texels, the samples of these.
   std::vector<uint32_t> blocks, ids;
+  std::vector<float> power;  // of sources
   std::vector<float> lanes;
   PhotoColors colors;
   float* weight;
@@ -271,14 +276,25 @@ void TilePainter::Weigh(const View& view, TileWork* work) const {
     const float ramp = std::min(std::max(border * per_px, least), 1.0f);
     weight[j] *= border >= 0 ? ramp : 0.0f;
   }
-  if (!has_powers_ && options_.best_view_power == 1) return;
+  if (has_powers_) WeighByView(view, work);
+  if (options_.best_view_power == 1) return;
   const float power = static_cast<float>(options_.best_view_power);
   for (size_t j = 0; j < n; ++j) {
-    if (!(weight[j] > 0)) continue;
-    if (has_powers_) {
-      weight[j] *= Powers(view, work->tile.begin + work->ids[j], work->chart);
+    if (weight[j] > 0) weight[j] = std::exp2(power * std::log2(weight[j]));
+  }
+}
+
+// Multiplies by the powers, which texels have from where their visibility was
+// tested: a shown texel's source is shown as well, so in the list, and it comes
+// first.
+void TilePainter::WeighByView(const View& view, TileWork* work) const {
+  for (size_t j = 0; j < work->ids.size(); ++j) {
+    const uint32_t id = work->ids[j];
+    if (id >= work->num_texels) continue;  // of the last block
+    if (work->source[id] == id) {
+      work->power[id] = Powers(view, work->tile.begin + id, work->chart);
     }
-    weight[j] = std::exp2(power * std::log2(weight[j]));
+    work->weight[j] *= work->power[work->source[id]];
   }
 }
 

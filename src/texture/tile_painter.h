@@ -51,6 +51,7 @@ class TilePainter {
   void FindShown(const TileSights::View& sight, TileWork* work) const;
   void LookUp(const TileSights::View& sight, TileWork* work) const;
   void Weigh(const View& view, TileWork* work) const;
+  void WeighByView(const View& view, TileWork* work) const;
   void LookUpSmoothly(const View& view, TileWork* work) const;
   void ToCommonExposure(const View& view, TileWork* work) const;
   void Add(const View& view, TileWork* work) const;

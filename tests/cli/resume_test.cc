@@ -144,7 +144,7 @@ TEST(CliResume, OtherOptionsAreRefused) {
       {"plane_init", "simplified", "dense", "photometric"},
       {"lambda3", "2", "1", "geometry"},
       {"geometry_freedom", "none", "band", "geometry"},
-      {"geometry_band", "0.01", "0.006", "geometry"},
+      {"geometry_band", "0.02", "0.01", "geometry"},
   };
   for (const auto& c : kCases) {
     const std::string flag = std::string("--") + c.flag + "=";

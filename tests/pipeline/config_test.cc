@@ -65,6 +65,7 @@ TEST(StageSettings, EveryOptionBelongsToOneStage) {
                                 ? SimplifyStop::kCounts
                                 : SimplifyStop::kBudget;
        }},
+      {Stage::kSimplify, [](auto* o) { o->simplify.plane_reach_m = 0.5; }},
       {Stage::kSimplify, [](auto* o) { o->simplify.faces_per_m2 = 5; }},
       {Stage::kSimplify, [](auto* o) { o->simplify.inner_target = 5; }},
       {Stage::kSimplify, [](auto* o) { o->simplify.border_ratio = 0.5; }},

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 
 #include "tests/texture/bake_wall.h"
 #include "texture/textured_mesh.h"
@@ -106,6 +107,39 @@ TEST(Bake, BestViewPowerPrefersTheNearView) {
   wall.options.angle_power = wall.options.depth_power = 0;
   wall.options.best_view_power = 1;
   EXPECT_EQ(wall.Bake()[0].at<cv::Vec3b>(y, x)[0], 100);
+}
+
+// Breaks when the powers are left out or inverted, or when texels have those of
+// another square than their own.
+TEST(Bake, ViewsCountByThePixelsTheyHaveForAMetre) {
+  const auto two_views = [](const Pose& second) {
+    auto wall = std::make_unique<Wall>(0);
+    wall->Add(Pose());
+    wall->Add(second);
+    wall->sequence.color(0).setTo(cv::Scalar::all(80));
+    wall->sequence.color(1).setTo(cv::Scalar::all(120));
+    return wall;
+  };
+  const auto twice_as_far =
+      two_views(Pose(Eigen::Quaterniond::Identity(), Vector3d(0, 0, 0.5)));
+  const Chart& chart = twice_as_far->atlas.charts[0];
+  const int y = chart.y + chart.height / 2;
+  EXPECT_NEAR(
+      twice_as_far->Bake()[0].at<cv::Vec3b>(y, chart.x + chart.width / 2)[0],
+      (2 * 80 + 120) / 3.0,
+      1);
+
+  // About the wall's centre: nearer on one side.
+  const Eigen::Quaterniond turn(
+      Eigen::AngleAxisd(50 * M_PI / 180, Vector3d::UnitY()));
+  const Vector3d center(0, 0, 0.5);
+  const auto turned = two_views(Pose(turn, center - turn * center));
+  const cv::Mat by_square = turned->Bake()[0];
+  EXPECT_GT(std::abs(by_square.at<cv::Vec3b>(y, chart.x + 9)[0] -
+                     by_square.at<cv::Vec3b>(y, chart.x + chart.width - 9)[0]),
+            3);
+  turned->options.visibility_px = 1;
+  EXPECT_LE(cv::norm(by_square, turned->Bake()[0], cv::NORM_INF), 1);
 }
 
 TEST(Bake, WarpMovesTheLookup) {
