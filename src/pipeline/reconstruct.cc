@@ -7,10 +7,10 @@
 #include <filesystem>
 
 #include "eval/trajectory_error.h"
-#include "mesh/mesh_io.h"
 #include "pipeline/artefacts.h"
 #include "pipeline/export_stage.h"
 #include "pipeline/meanwhile.h"
+#include "pipeline/mesh_stages.h"
 #include "pipeline/preflight.h"
 #include "pipeline/report.h"
 #include "pipeline/stage_clock.h"
@@ -99,14 +99,6 @@ class Run {
     fs::remove(options_.output_path + "/report.json", ignored);
   }
 
-  CleanReport Clean() {
-    try {
-      return CleanMesh(options_.clean, &dense_.mesh);
-    } catch (const InputError& e) {
-      throw InputError(options_.mesh_path + ": " + e.what());
-    }
-  }
-
   void AnnouncePlan() {
     const SceneSize size = MeasureScene(options_, dense_.mesh, *sequence_);
     place_ = FitIntoMemory(options_, size);
@@ -140,46 +132,21 @@ class Run {
       stages_.push_back(clock.Finish("read"));
       return;
     }
-    MeshFile file = ReadMesh(options_.mesh_path);
-    dense_.mesh = std::move(file.mesh);
-    const size_t faces = dense_.mesh.NumFaces();
-    const size_t vertices = dense_.mesh.NumVertices();
-    const CleanReport cleaned = Clean();
-    const SplitReport split = SplitNonManifold(&dense_.mesh);
+    dense_ = ReadDenseMesh(options_);
     AnnouncePlan();
     BeginWriting();
     if (options_.max_memory_gb > 0) ReadImages();
-    if (split.non_manifold_edges + split.split_vertices > 0) {
-      AddWarning(
-          Format("%s: opened %zu non-manifold edges and split %zu "
-                 "non-manifold vertices",
-                 options_.mesh_path.c_str(),
-                 split.non_manifold_edges,
-                 split.split_vertices));
-    }
-    PartitionReport partition_report;
-    const PlanarPartition clusters =
-        PartitionMesh(dense_.mesh, options_.partition, &partition_report);
-    MergeReport merge_report;
-    dense_.partition =
-        MergePlanes(dense_.mesh, clusters, options_.merge, &merge_report);
-    dense_.report = {{"input", {{"vertices", vertices}, {"faces", faces}}},
-                     {"cleaning", cleaned.Summary()},
-                     {"split_vertices", split.split_vertices},
-                     {"clusters", clusters.clusters.size()},
-                     {"rms_before_merging_m", partition_report.rms_m},
-                     {"planes", dense_.partition.clusters.size()},
-                     {"rms_after_merging_m", merge_report.rms_m},
-                     {"islands_absorbed", merge_report.islands}};
+    PartitionDense(options_, &dense_);
     dense_.warnings = StageWarnings();
     Save(options_, Stage::kPartition, dense_);
+    const json& done = dense_.report;
     stages_.push_back(clock.Finish(
         Format("%zu faces, %zu clusters (rms %.2f mm), %zu planes (%.2f mm)",
                dense_.mesh.NumFaces(),
-               clusters.clusters.size(),
-               1e3 * partition_report.rms_m,
-               dense_.partition.clusters.size(),
-               1e3 * merge_report.rms_m)));
+               done.at("clusters").get<size_t>(),
+               1e3 * done.at("rms_before_merging_m").get<double>(),
+               done.at("planes").get<size_t>(),
+               1e3 * done.at("rms_after_merging_m").get<double>())));
   }
 
   void RunSimplify() {
@@ -195,21 +162,7 @@ class Run {
       return;
     }
     BeginWriting();
-    SimplifyResult result =
-        SimplifyByPlanes(dense_.mesh, dense_.partition, options_.simplify);
-    simplified_.mesh = std::move(result.mesh);
-    simplified_.partition = std::move(result.partition);
-    for (const PlaneCluster& cluster : result.refit) {
-      simplified_.refitted_planes.push_back(cluster.plane);
-    }
-    simplified_.mesh.vertex_colors.clear();
-    if (!dense_.mesh.vertex_colors.empty()) {
-      for (const int birth : result.vertex_birth) {
-        simplified_.mesh.vertex_colors.push_back(
-            dense_.mesh.vertex_colors[birth]);
-      }
-    }
-    simplified_.report = SimplifyStageReport(result.report);
+    simplified_ = SimplifyDense(options_, dense_);
     simplified_.warnings = StageWarnings();
     Save(options_, Stage::kSimplify, simplified_);
     stages_.push_back(clock.Finish(
