@@ -104,6 +104,46 @@ TEST(Simplify, DearCollapsesAreNotMade) {
   }
 }
 
+// Volume between z = 0 and the faces of a cluster, which lie above it.
+double VolumeBelow(const TriMesh& mesh, const std::vector<int>& label, int id) {
+  double volume = 0;
+  for (size_t f = 0; f < mesh.NumFaces(); ++f) {
+    if (label[f] != id) continue;
+    volume += 0.5 * mesh.FaceCross(f).z() * mesh.FaceCentroid(f).z();
+  }
+  return volume;
+}
+
+// Breaks if what stands off the plane of its cluster is flattened onto it, or
+// what lies near the plane is not drawn to it any more: half a sheet has a
+// table of 6 cm, the other one waves of 1 mm.
+TEST(Simplify, PlanesDrawOnlyWhatIsNear) {
+  LabelledMesh sheet = MakeSheet(24, [](double x, double y) {
+    if (x <= 0.5) return 0.001 * std::sin(80 * x) * std::sin(70 * y);
+    return x > 0.6 && x < 0.9 && y > 0.3 && y < 0.7 ? 0.06 : 0;
+  });
+  for (PlaneCluster& cluster : sheet.partition.clusters) {
+    cluster.plane = Plane{Eigen::Vector3d::UnitZ(), 0};
+  }
+  SimplifyOptions options;
+  options.target_faces = 60;
+  options.free_error_m = 0;
+  const double table = VolumeBelow(sheet.mesh, sheet.partition.face_cluster, 1);
+  SimplifyResult result =
+      SimplifyByPlanes(sheet.mesh, sheet.partition, options);
+  ExpectSound(sheet, result);
+  EXPECT_NEAR(VolumeBelow(result.mesh, result.partition.face_cluster, 1),
+              table,
+              0.03 * table);
+  for (const Eigen::Vector3d& v : result.mesh.vertices) {
+    EXPECT_TRUE(v.x() > 0.45 || std::abs(v.z()) < 0.0005) << v.transpose();
+  }
+  options.plane_reach_m = 0;  // the same share at any distance
+  result = SimplifyByPlanes(sheet.mesh, sheet.partition, options);
+  EXPECT_LT(VolumeBelow(result.mesh, result.partition.face_cluster, 1),
+            0.8 * table);
+}
+
 // Breaks if step 1 touches borders: every border vertex of the input is still
 // there, where it was, when step 2 has nothing to do.
 TEST(Simplify, StepOneLeavesBorders) {
