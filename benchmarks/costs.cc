@@ -258,7 +258,7 @@ class Registry {
 
   // The production kernel with every instruction set of this processor.
   void AddKernels(const std::string& name, const Formulation& formulation) {
-    for (const char* kernel_name : {"baseline", "avx2", "avx512"}) {
+    for (const char* kernel_name : kPhotoKernelNames) {
       const PhotoKernel* kernel = FindPhotoKernel(kernel_name);
       if (!kernel) continue;
       for (const bool jacobians : {false, true}) {

@@ -122,6 +122,7 @@ inline void WarpAnywhere(const PhotoFrame& f, Chunk* c) {
   const float max_a = static_cast<float>(last_a);
   const float max_b = static_cast<float>(last_b);
   const int lanes = LanesOf(*c);
+  Lane shift_u, shift_v;
   for (int i = 0; i < lanes; ++i) {
     const float gx = c->u.v[i] * f.inverse_cell_width;
     const float gy = c->v.v[i] * f.inverse_cell_height;
@@ -147,8 +148,14 @@ inline void WarpAnywhere(const PhotoFrame& f, Chunk* c) {
     }
     const float w00 = (1 - al) * (1 - be), w10 = al * (1 - be);
     const float w01 = (1 - al) * be, w11 = al * be;
-    c->u.v[i] += w00 * f00x + w10 * f10x + w01 * f01x + w11 * f11x;
-    c->v.v[i] += w00 * f00y + w10 * f10y + w01 * f01y + w11 * f11y;
+    shift_u.v[i] = w00 * f00x + w10 * f10x + w01 * f01x + w11 * f11x;
+    shift_v.v[i] = w00 * f00y + w10 * f10y + w01 * f01y + w11 * f11y;
+  }
+  // A loop of its own: -fassociative-math could add the terms one by one to
+  // pixel coordinates, which are a hundred times as large, and round each time.
+  for (int i = 0; i < lanes; ++i) {
+    c->u.v[i] += shift_u.v[i];
+    c->v.v[i] += shift_v.v[i];
   }
 }
 

@@ -389,7 +389,7 @@ TEST_P(PhotoKernelTest, AgreesWithTheBaseline) {
 
 INSTANTIATE_TEST_SUITE_P(Kernels,
                          PhotoKernelTest,
-                         testing::Values("baseline", "avx2", "avx512"),
+                         testing::ValuesIn(kPhotoKernelNames),
                          [](const auto& param_info) {
                            return std::string(param_info.param);
                          });
