@@ -2,30 +2,48 @@
 // SPDX-License-Identifier: MIT
 //
 // A 4-ary heap of the integers 0 ... n-1 by a key that may change; 20 bytes an
-// integer. Equal keys: the smaller integer first.
+// integer. Equal keys: the smaller integer first. Large heaps do not fit into
+// caches, so the four children of an entry share a line, and lines are asked
+// for ahead of use.
 #pragma once
 
 #include <algorithm>
-#include <vector>
+
+#include "util/fetch.h"
+#include "util/huge_pages.h"
 
 namespace facet {
 
 class IndexedHeap {
  public:
-  explicit IndexedHeap(size_t n) : place_(n, -1) { entries_.reserve(n); }
+  explicit IndexedHeap(size_t n) : lines_((n + 6) / 4), place_(n, -1) {}
 
-  bool Empty() const { return entries_.empty(); }
-  int Top() const { return entries_[0].id; }
-  double TopKey() const { return entries_[0].key; }
+  bool Empty() const { return size_ == 0; }
+  int Top() const { return At(0).id; }
+  double TopKey() const { return At(0).key; }
   bool Contains(int id) const { return place_[id] >= 0; }
+
+  // The entry at a place, the integer or -1. The next top is at one of the
+  // places 1 to 4, the one after it at 20 at most.
+  int Peek(int place) const { return place < size_ ? At(place).id : -1; }
+
+  // Hints that Set or Remove of `id` will follow; the second one reads what the
+  // first one asks for.
+  FACET_FETCH void FetchPlace(int id) const { __builtin_prefetch(&place_[id]); }
+  FACET_FETCH void FetchEntry(int id) const {
+    const int place = place_[id];
+    if (place < 0) return;
+    __builtin_prefetch(&At(place));
+    __builtin_prefetch(&At((place + 3) / 4 - 1));  // above
+    const size_t below = static_cast<size_t>(place) + 1;
+    if (below < lines_.size()) __builtin_prefetch(&lines_[below]);
+  }
 
   // Inserts `id`, or changes its key.
   void Set(int id, double key) {
-    int place = place_[id];
+    const int place = place_[id];
     if (place < 0) {
-      place = static_cast<int>(entries_.size());
-      entries_.push_back({key, id});
-      Up(place, {key, id});
+      Up(size_++, {key, id});
     } else {
       Move(place, {key, id});
     }
@@ -35,9 +53,8 @@ class IndexedHeap {
     const int place = place_[id];
     if (place < 0) return;
     place_[id] = -1;
-    const Entry last = entries_.back();
-    entries_.pop_back();
-    if (place < static_cast<int>(entries_.size())) Move(place, last);
+    const Entry last = At(--size_);
+    if (place < size_) Move(place, last);
   }
 
  private:
@@ -48,15 +65,26 @@ class IndexedHeap {
       return key != other.key ? key < other.key : id < other.id;
     }
   };
+  struct alignas(64) Line {
+    Entry entries[4];
+  };
+
+  // The root is the last entry of the first line.
+  Entry& At(int place) {
+    return lines_[static_cast<size_t>(place + 3) / 4].entries[(place + 3) % 4];
+  }
+  const Entry& At(int place) const {
+    return lines_[static_cast<size_t>(place + 3) / 4].entries[(place + 3) % 4];
+  }
 
   void Put(int place, const Entry& entry) {
-    entries_[place] = entry;
+    At(place) = entry;
     place_[entry.id] = place;
   }
 
   // Puts `entry` where it belongs, from `place` on.
   void Move(int place, const Entry& entry) {
-    if (place > 0 && entry < entries_[(place - 1) / 4]) {
+    if (place > 0 && entry < At((place - 1) / 4)) {
       Up(place, entry);
     } else {
       Down(place, entry);
@@ -66,31 +94,40 @@ class IndexedHeap {
   void Up(int place, const Entry& entry) {
     while (place > 0) {
       const int parent = (place - 1) / 4;
-      if (!(entry < entries_[parent])) break;
-      Put(place, entries_[parent]);
+      if (!(entry < At(parent))) break;
+      Put(place, At(parent));
       place = parent;
     }
     Put(place, entry);
   }
 
   void Down(int place, const Entry& entry) {
-    const int size = static_cast<int>(entries_.size());
     for (;;) {
       const int first = 4 * place + 1;
-      if (first >= size) break;
+      if (first >= size_) break;
+      FetchChildren(first);
       int least = first;
-      for (int child = first + 1; child < std::min(first + 4, size); ++child) {
-        if (entries_[child] < entries_[least]) least = child;
+      for (int child = first + 1; child < std::min(first + 4, size_); ++child) {
+        if (At(child) < At(least)) least = child;
       }
-      if (!(entries_[least] < entry)) break;
-      Put(place, entries_[least]);
+      if (!(At(least) < entry)) break;
+      Put(place, At(least));
       place = least;
     }
     Put(place, entry);
   }
 
-  std::vector<Entry> entries_;
-  std::vector<int> place_;  // of an integer, -1 = not in the heap
+  // The children of the four entries from `first` on.
+  FACET_FETCH void FetchChildren(int first) const {
+    const size_t line = static_cast<size_t>(first) + 1;
+    for (size_t k = line; k < std::min(line + 4, lines_.size()); ++k) {
+      __builtin_prefetch(&lines_[k]);
+    }
+  }
+
+  HugeVector<Line> lines_;
+  HugeVector<int> place_;  // of an integer, -1 = not in the heap
+  int size_ = 0;
 };
 
 }  // namespace facet
