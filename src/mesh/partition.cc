@@ -22,10 +22,10 @@ void CheckOptions(const PartitionOptions& options) {
   }
   if (!(options.max_rms_m >= 0) || !(options.max_merge_energy >= 0) ||
       !(options.energy.alpha >= 0) || !(options.energy.tau >= 0) ||
-      options.max_swap_sweeps < 0) {
+      options.max_swap_sweeps < 0 || options.region_faces < 0) {
     throw OptionsError(
-        "partition: max_rms_m, max_merge_energy, alpha, tau and "
-        "max_swap_sweeps must not be negative");
+        "partition: max_rms_m, max_merge_energy, alpha, tau, max_swap_sweeps "
+        "and region_faces must not be negative");
   }
 }
 
@@ -116,6 +116,53 @@ std::vector<SurfaceMoments> AllFaceMoments(const TriMesh& mesh) {
   return moments;
 }
 
+// The pairs of different clusters, sorted, each once.
+void RelabelPairs(const std::vector<int>& label,
+                  std::vector<std::pair<int, int>>* pairs) {
+  for (auto& [f, g] : *pairs) {
+    const auto [low, high] = std::minmax(label[f], label[g]);
+    f = low;
+    g = high;
+  }
+  const auto same = [](const std::pair<int, int>& p) {
+    return p.first == p.second;
+  };
+  pairs->erase(std::remove_if(pairs->begin(), pairs->end(), same),
+               pairs->end());
+  std::sort(pairs->begin(), pairs->end());
+  pairs->erase(std::unique(pairs->begin(), pairs->end()), pairs->end());
+}
+
+std::vector<int> MergeFaces(const TriMesh& mesh,
+                            const PartitionOptions& options,
+                            std::vector<std::pair<int, int>> pairs) {
+  const int64_t faces = static_cast<int64_t>(mesh.NumFaces());
+  constexpr int kFacesPerCluster = 32;
+  if (options.region_faces == 0 || faces <= 4LL * options.region_faces ||
+      faces < 4LL * kFacesPerCluster * options.target_clusters) {
+    return MergeGreedily(Limits(options),
+                         options.energy,
+                         AllFaceMoments(mesh),
+                         std::move(pairs));
+  }
+  std::vector<int> label;
+  const int count = MergeInRegions(mesh,
+                                   pairs,
+                                   options.energy,
+                                   Limits(options),
+                                   options.region_faces,
+                                   kFacesPerCluster,
+                                   &label);
+  RelabelPairs(label, &pairs);
+  const std::vector<int> merged =
+      MergeGreedily(Limits(options),
+                    options.energy,
+                    ClusterMoments(mesh, label, count),
+                    std::move(pairs));
+  for (int& l : label) l = merged[l];
+  return label;
+}
+
 }  // namespace
 
 std::vector<SurfaceMoments> ClusterMoments(const TriMesh& mesh,
@@ -142,8 +189,7 @@ PlanarPartition PartitionMesh(const TriMesh& mesh,
   std::vector<std::pair<int, int>> pairs = FacePairs(mesh);
   report->components = CountComponents(pairs, mesh.NumFaces());
   const PartitionOptions options = MakeRoomForPieces(asked, report->components);
-  label = MergeGreedily(
-      Limits(options), options.energy, AllFaceMoments(mesh), std::move(pairs));
+  label = MergeFaces(mesh, options, std::move(pairs));
   report->greedy_clusters = NumLabels(label);
 
   const FaceNeighbors neighbors = BuildFaceNeighbors(mesh);

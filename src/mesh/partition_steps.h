@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mesh/edge_uses.h"
+#include "mesh/greedy_merge.h"
 #include "mesh/partition.h"
 
 namespace facet {
@@ -17,6 +18,19 @@ inline SurfaceMoments FaceMoments(const TriMesh& mesh, size_t face) {
   return TriangleMoments(
       mesh.vertices[f[0]], mesh.vertices[f[1]], mesh.vertices[f[2]]);
 }
+
+// The first merges of a large mesh: greedy ones inside regions of about
+// `faces_per_region` faces that lie together, down to clusters of
+// `faces_per_cluster` faces in the mean, on all threads. A region fits into
+// caches, the queue of a whole scan does not. `pairs` is FacePairs(mesh).
+// Returns the number of clusters.
+int MergeInRegions(const TriMesh& mesh,
+                   const std::vector<std::pair<int, int>>& pairs,
+                   const ClusterEnergyOptions& energy,
+                   GreedyLimits limits,
+                   int faces_per_region,
+                   int faces_per_cluster,
+                   std::vector<int>* label);
 
 // Gauss-Seidel swapping of border faces (method, Sec. 2.5): a face goes to the
 // neighbouring cluster that lowers the sum of energies most. No cluster is

@@ -21,7 +21,7 @@ Collapser::Impl::Impl(const TriMesh& mesh,
       soft_limits(ShapeLimits::Soft(options_in)),
       hard_limits(ShapeLimits::Hard(options_in)) {
   const MeshRegions regions =
-      DivideIntoRegions(mesh, partition, faces_per_region);
+      DivideIntoRegions(mesh, partition.face_cluster, faces_per_region);
   BuildKernel(mesh, regions);
   MarkBorders();
   BuildQuadrics(mesh, regions);

@@ -10,9 +10,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "mesh/mesh_regions.h"
 #include "mesh/quadric.h"
 #include "mesh/simplify_internal.h"
-#include "mesh/simplify_regions.h"
 #include "mesh/simplify_shape.h"
 
 namespace facet {

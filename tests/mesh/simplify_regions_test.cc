@@ -1,13 +1,12 @@
 // Copyright (c) 2026 The facet authors
 // SPDX-License-Identifier: MIT
-#include "mesh/simplify_regions.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <set>
 
 #include "mesh/clean.h"
+#include "mesh/mesh_regions.h"
 #include "mesh/simplify_internal.h"
 #include "tests/mesh/plane_scenes.h"
 #include "tests/mesh/simplify_checks.h"
@@ -102,8 +101,8 @@ double MeanDistance(const TriMesh& light) {
 TEST(SimplifyRegions, EveryClusterIsInOneRegion) {
   const std::vector<int>& label = NoisyRoom().partition.face_cluster;
   for (const int size : {1, kSmallRegion, 100000}) {
-    const MeshRegions regions =
-        DivideIntoRegions(NoisyRoom().mesh, NoisyRoom().partition, size);
+    const MeshRegions regions = DivideIntoRegions(
+        NoisyRoom().mesh, NoisyRoom().partition.face_cluster, size);
     std::set<int> faces, clusters;
     for (int r = 0; r < regions.Count(); ++r) {
       std::set<int> mine;
@@ -128,7 +127,9 @@ TEST(SimplifyRegions, DividesWhatIsMissing) {
   EXPECT_EQ(DivideIntoRegions({}, {}, 10).Count(), 1);
   LabelledMesh sheet = MakeSheet(2, [](double, double) { return 0.0; });
   for (int& id : sheet.partition.face_cluster) id *= 7;
-  EXPECT_EQ(DivideIntoRegions(sheet.mesh, sheet.partition, 8).Count(), 2);
+  EXPECT_EQ(
+      DivideIntoRegions(sheet.mesh, sheet.partition.face_cluster, 8).Count(),
+      2);
 }
 
 // Breaks if regions that collapse at the same time see each other.

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The facet authors
 // SPDX-License-Identifier: MIT
-#include "mesh/simplify_regions.h"
+#include "mesh/mesh_regions.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -77,9 +77,8 @@ class Divider {
 }  // namespace
 
 MeshRegions DivideIntoRegions(const TriMesh& mesh,
-                              const PlanarPartition& partition,
+                              const std::vector<int>& label,
                               int faces_per_region) {
-  const std::vector<int>& label = partition.face_cluster;
   std::vector<Cluster> clusters = CollectClusters(mesh, label);
   // Clusters without faces are in no region.
   const size_t num_clusters = clusters.size();
