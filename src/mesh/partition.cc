@@ -72,13 +72,13 @@ int ConnectClusters(const TriMesh& mesh,
   return num_clusters;
 }
 
-// Clusters that fell apart have left more than were asked for: merge again,
-// now whole clusters.
-void MergeAgain(const TriMesh& mesh,
-                const FaceNeighbors& neighbors,
-                const PartitionOptions& options,
-                int num_clusters,
-                std::vector<int>* label) {
+// Goes on with whole clusters: after the merges inside regions, and where
+// clusters that fell apart have left more than were asked for.
+void MergeClusters(const TriMesh& mesh,
+                   const FaceNeighbors& neighbors,
+                   const PartitionOptions& options,
+                   int num_clusters,
+                   std::vector<int>* label) {
   const std::vector<int> merged =
       MergeGreedily(Limits(options),
                     options.energy,
@@ -116,51 +116,13 @@ std::vector<SurfaceMoments> AllFaceMoments(const TriMesh& mesh) {
   return moments;
 }
 
-// The pairs of different clusters, sorted, each once.
-void RelabelPairs(const std::vector<int>& label,
-                  std::vector<std::pair<int, int>>* pairs) {
-  for (auto& [f, g] : *pairs) {
-    const auto [low, high] = std::minmax(label[f], label[g]);
-    f = low;
-    g = high;
-  }
-  const auto same = [](const std::pair<int, int>& p) {
-    return p.first == p.second;
-  };
-  pairs->erase(std::remove_if(pairs->begin(), pairs->end(), same),
-               pairs->end());
-  std::sort(pairs->begin(), pairs->end());
-  pairs->erase(std::unique(pairs->begin(), pairs->end()), pairs->end());
-}
+// In the mean, after the merges inside regions.
+constexpr int kFacesPerCluster = 32;
 
-std::vector<int> MergeFaces(const TriMesh& mesh,
-                            const PartitionOptions& options,
-                            std::vector<std::pair<int, int>> pairs) {
+bool IsLarge(const TriMesh& mesh, const PartitionOptions& options) {
   const int64_t faces = static_cast<int64_t>(mesh.NumFaces());
-  constexpr int kFacesPerCluster = 32;
-  if (options.region_faces == 0 || faces <= 4LL * options.region_faces ||
-      faces < 4LL * kFacesPerCluster * options.target_clusters) {
-    return MergeGreedily(Limits(options),
-                         options.energy,
-                         AllFaceMoments(mesh),
-                         std::move(pairs));
-  }
-  std::vector<int> label;
-  const int count = MergeInRegions(mesh,
-                                   pairs,
-                                   options.energy,
-                                   Limits(options),
-                                   options.region_faces,
-                                   kFacesPerCluster,
-                                   &label);
-  RelabelPairs(label, &pairs);
-  const std::vector<int> merged =
-      MergeGreedily(Limits(options),
-                    options.energy,
-                    ClusterMoments(mesh, label, count),
-                    std::move(pairs));
-  for (int& l : label) l = merged[l];
-  return label;
+  return options.region_faces > 0 && faces > 4LL * options.region_faces &&
+         faces >= 4LL * kFacesPerCluster * options.target_clusters;
 }
 
 }  // namespace
@@ -189,15 +151,32 @@ PlanarPartition PartitionMesh(const TriMesh& mesh,
   std::vector<std::pair<int, int>> pairs = FacePairs(mesh);
   report->components = CountComponents(pairs, mesh.NumFaces());
   const PartitionOptions options = MakeRoomForPieces(asked, report->components);
-  label = MergeFaces(mesh, options, std::move(pairs));
+  const bool large = IsLarge(mesh, options);
+  if (large) {
+    MergeInRegions(mesh,
+                   std::move(pairs),
+                   options.energy,
+                   Limits(options),
+                   options.region_faces,
+                   kFacesPerCluster,
+                   &label);
+  } else {
+    label = MergeGreedily(Limits(options),
+                          options.energy,
+                          AllFaceMoments(mesh),
+                          std::move(pairs));
+  }
+  const FaceNeighbors neighbors = BuildFaceNeighbors(mesh);
+  if (large) {
+    MergeClusters(mesh, neighbors, options, NumLabels(label), &label);
+  }
   report->greedy_clusters = NumLabels(label);
 
-  const FaceNeighbors neighbors = BuildFaceNeighbors(mesh);
   SwapBorders(mesh, neighbors, options, &label, report);
   int count = ConnectClusters(
       mesh, neighbors, report->greedy_clusters, &label, &report->loose_pieces);
   if (count > options.target_clusters) {
-    MergeAgain(mesh, neighbors, options, count, &label);
+    MergeClusters(mesh, neighbors, options, count, &label);
   }
   CompactLabels(count, &label);
   RefitClusters(mesh, &partition);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <utility>
 
 #include "mesh/greedy_merge.h"
 #include "mesh/mesh_regions.h"
@@ -50,7 +51,7 @@ std::vector<Place> FindPlaces(const MeshRegions& regions) {
 }  // namespace
 
 int MergeInRegions(const TriMesh& mesh,
-                   const std::vector<std::pair<int, int>>& pairs,
+                   std::vector<std::pair<int, int>> pairs,
                    const ClusterEnergyOptions& energy,
                    GreedyLimits limits,
                    int faces_per_region,
@@ -64,6 +65,7 @@ int MergeInRegions(const TriMesh& mesh,
     const Place &a = places[f], &b = places[g];
     if (a.region == b.region) inner[a.region].push_back({a.index, b.index});
   }
+  pairs = {};
   label->assign(mesh.NumFaces(), 0);
   std::vector<int> first(regions.Count() + 1, 0);
   ParallelFor(0, regions.Count(), [&](size_t r) {

@@ -25,7 +25,7 @@ inline SurfaceMoments FaceMoments(const TriMesh& mesh, size_t face) {
 // caches, the queue of a whole scan does not. `pairs` is FacePairs(mesh).
 // Returns the number of clusters.
 int MergeInRegions(const TriMesh& mesh,
-                   const std::vector<std::pair<int, int>>& pairs,
+                   std::vector<std::pair<int, int>> pairs,
                    const ClusterEnergyOptions& energy,
                    GreedyLimits limits,
                    int faces_per_region,

@@ -9,7 +9,6 @@
 #include "mesh/partition.h"
 #include "mesh/partition_steps.h"
 #include "tests/mesh/test_shapes.h"
-#include "util/errors.h"
 #include "util/parallel_for.h"
 
 namespace facet {
